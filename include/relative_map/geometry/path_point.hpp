@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "relative_map/geometry/pose2.hpp"
+
+namespace relative_map {
+
+/// A vertex of a path with the geometry of the curve there. The frame is the path's.
+struct PathPoint {
+  Point2 position = Point2::Zero();     ///< [m]
+  Point2 direction = Point2::UnitX();   ///< unit tangent, (cos theta, sin theta)
+  double theta = 0.0;                   ///< [rad] in (-pi, pi]
+  double kappa = 0.0;                   ///< [1/m] positive to the left
+  double dkappa = 0.0;                  ///< [1/m^2] by s
+  double s = 0.0;                       ///< [m] chord length from the first point
+};
+
+using PathPoints = std::vector<PathPoint>;
+using Polyline = std::vector<Point2>;
+
+/// Whether a path is a lap: its last point is then followed by its first.
+enum class Ends { kOpen, kClosed };
+
+/// Sets s to the chord length from the first point.
+void compute_arc_length(PathPoints& points);
+
+/// Sets direction, theta, kappa and dkappa from positions and s; needs two or more distinct points in a row.
+/// theta and kappa are those of the circle through a point and its two neighbours (kappa by Menger's
+/// formula, 4 area / product of sides), so they are exact on lines and circles, however unevenly sampled.
+/// `lap_length` [m] is the chord length of a closed path, its closing segment included.
+void compute_geometry(PathPoints& points, Ends ends = Ends::kOpen, double lap_length = 0.0);
+
+/// The point at arc length s [m], linear between vertices, held at the ends. `hint` is a vertex to start
+/// the search from, and comes back as the vertex at or before s: walking along a path costs O(1) a step.
+PathPoint interpolate(const PathPoints& points, double s, std::size_t& hint);
+
+/// Where a point projects on a polyline.
+struct Foot {
+  std::size_t segment = 0;  ///< between vertices `segment` and `segment + 1`
+  double fraction = 0.0;    ///< [0, 1] along the segment
+  Point2 point = Point2::Zero();
+  double squared_distance = 0.0;  ///< [m^2]
+};
+
+/// The nearest point of the segment a-b to `point`; `segment` of the result is 0.
+Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point);
+
+/// Walks a polyline beside a moving point: each call starts where the last one ended, and goes on as long
+/// as that brings it nearer. O(1) a call for points in the polyline's order.
+class PolylineWalker {
+ public:
+  /// `polyline` must have two or more points and outlive the walker.
+  explicit PolylineWalker(const Polyline& polyline) : polyline_(polyline) {}
+  Foot nearest(const Point2& point);
+  /// Whether a foot is held at an end of the polyline: the point lies beside nothing.
+  bool beyond_end(const Foot& foot) const {
+    return (foot.segment == 0 && foot.fraction <= 0.0) ||
+           (foot.segment + 2 == polyline_.size() && foot.fraction >= 1.0);
+  }
+
+ private:
+  const Polyline& polyline_;
+  std::size_t segment_ = 0;
+};
+
+double chord_length(const Polyline& points);
+
+}  // namespace relative_map

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <utility>
+#include <vector>
+
+#include "relative_map/geometry/path_point.hpp"
+
+namespace relative_map {
+
+/// Finds the places where a path passes by a point, in logarithmic time.
+/// Runs of segments share one box of the R-tree: it is built faster, and a query still looks at few.
+class SegmentIndex {
+ public:
+  SegmentIndex() = default;
+  /// Two or more points; a closed path has one more segment, from its last point to its first.
+  SegmentIndex(const PathPoints& points, Ends ends);
+
+  /// The local minima of the distance from `point` to the path, up to `max_distance` [m], by rising
+  /// segment. `points` must be those that the index was built from.
+  std::vector<Foot> passes(const PathPoints& points, const Point2& point, double max_distance) const;
+
+  /// The nearest point of the path, wherever it is.
+  Foot nearest(const PathPoints& points, const Point2& point) const;
+
+ private:
+  using BoostPoint = boost::geometry::model::d2::point_xy<double>;
+  using Box = boost::geometry::model::box<BoostPoint>;
+  using Run = std::pair<Box, std::size_t>;  ///< the box around a run of segments, and its first segment
+
+  Foot project(const PathPoints& points, std::size_t segment, const Point2& point) const;
+
+  boost::geometry::index::rtree<Run, boost::geometry::index::rstar<16>> runs_;
+  std::size_t segments_ = 0;
+};
+
+}  // namespace relative_map
