@@ -14,7 +14,9 @@ inline double normalize_angle(double angle) {
 }
 
 /// a - b the short way round, in (-pi, pi].
-inline double angle_difference(double a, double b) { return normalize_angle(a - b); }
+inline double angle_difference(double a, double b) {
+  return normalize_angle(a - b);
+}
 
 /// The direction `weight` of the way from a to b, the short way round.
 inline double interpolate_angle(double a, double b, double weight) {

@@ -8,12 +8,12 @@ namespace relative_map {
 
 /// A vertex of a path with the geometry of the curve there. The frame is the path's.
 struct PathPoint {
-  Point2 position = Point2::Zero();     ///< [m]
-  Point2 direction = Point2::UnitX();   ///< unit tangent, (cos theta, sin theta)
-  double theta = 0.0;                   ///< [rad] in (-pi, pi]
-  double kappa = 0.0;                   ///< [1/m] positive to the left
-  double dkappa = 0.0;                  ///< [1/m^2] by s
-  double s = 0.0;                       ///< [m] chord length from the first point
+  Point2 position = Point2::Zero();    ///< [m]
+  Point2 direction = Point2::UnitX();  ///< unit tangent, (cos theta, sin theta)
+  double theta = 0.0;                  ///< [rad] in (-pi, pi]
+  double kappa = 0.0;                  ///< [1/m] positive to the left
+  double dkappa = 0.0;                 ///< [1/m^2] by s
+  double s = 0.0;                      ///< [m] chord length from the first point
 };
 
 using PathPoints = std::vector<PathPoint>;
@@ -46,13 +46,13 @@ struct Foot {
 /// The nearest point of the segment a-b to `point`; `segment` of the result is 0.
 Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point);
 
-/// Walks a polyline beside a moving point: each call starts where the last one ended, and goes on as long
-/// as that brings it nearer. O(1) a call for points in the polyline's order.
+/// Walks a polyline beside a moving point: each call starts at the segment where the last one ended and goes
+/// on to the next foot, so that points in the polyline's order cost O(1) each.
 class PolylineWalker {
  public:
   /// `polyline` must have two or more points and outlive the walker.
   explicit PolylineWalker(const Polyline& polyline) : polyline_(polyline) {}
-  Foot nearest(const Point2& point);
+  Foot next(const Point2& point);
   /// Whether a foot is held at an end of the polyline: the point lies beside nothing.
   bool beyond_end(const Foot& foot) const {
     return (foot.segment == 0 && foot.fraction <= 0.0) ||

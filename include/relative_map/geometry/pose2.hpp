@@ -10,10 +10,14 @@ namespace relative_map {
 using Point2 = Eigen::Vector2d;
 
 /// The unit vector 90 degrees to the left.
-inline Point2 left_of(const Point2& direction) { return {-direction.y(), direction.x()}; }
+inline Point2 left_of(const Point2& direction) {
+  return {-direction.y(), direction.x()};
+}
 
 /// z component of the cross product: positive where b points to the left of a.
-inline double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Point2& a, const Point2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// A frame's place in its parent frame: [m], [rad], counter-clockwise.
 class Pose2 {

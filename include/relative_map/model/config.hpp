@@ -24,8 +24,8 @@ struct NavigationLaneParam {
   double min_view_range_to_use_lane_marker = 0.5;   ///< [m]
   double min_lane_marker_quality = 0.5;             ///< [-] below it a marker does not count
   double min_lane_half_width = 1.5;                 ///< [m] of perceived lanes
-  double max_lane_half_width = 2.0;                 ///< [m] of perceived lanes, and half the widest spacing of neighbours
-  double lane_marker_weight = 0.1;                  ///< [-] 0: the line alone, 1: the markers alone
+  double max_lane_half_width = 2.0;  ///< [m] of perceived lanes, and half the widest spacing of neighbours
+  double lane_marker_weight = 0.1;   ///< [-] 0: the line alone, 1: the markers alone
 };
 
 struct LaneFusionParam {
@@ -54,6 +54,7 @@ struct PipelineConfig {
   LaneFusionParam lane_fusion;
   MaxAgeParam max_age;
   Footprint footprint;
+  std::string base_frame = "base_link";  ///< maps are in this frame
   bool enable_cyclic_rerouting = true;
   bool generate_left_boundary = true;  ///< false: the outermost left boundary is marked virtual
 

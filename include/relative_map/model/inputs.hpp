@@ -69,11 +69,11 @@ struct Chassis {
 /// The pose of a link of the vehicle, ENU map frame; NaN: not given.
 struct Localization {
   Time stamp{};
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();                      ///< [m]
-  Eigen::Quaterniond map_from_body = Eigen::Quaterniond::Identity();       ///< FLU body to ENU
-  double heading = 0.0;                                                    ///< [rad] ccw from east
-  Eigen::Vector3d linear_velocity = Eigen::Vector3d::Zero();               ///< [m/s] ENU
-  Eigen::Vector3d angular_velocity_body = Eigen::Vector3d::Zero();         ///< [rad/s] FLU
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();                 ///< [m]
+  Eigen::Quaterniond map_from_body = Eigen::Quaterniond::Identity();  ///< FLU body to ENU
+  double heading = 0.0;                                               ///< [rad] ccw from east
+  Eigen::Vector3d linear_velocity = Eigen::Vector3d::Zero();          ///< [m/s] ENU
+  Eigen::Vector3d angular_velocity_body = Eigen::Vector3d::Zero();    ///< [rad/s] FLU
 };
 
 }  // namespace relative_map

@@ -72,8 +72,8 @@ struct LaneBoundary {
 /// A lane in the body frame; `path` is its centerline.
 struct Lane {
   std::string id;
-  std::string name;                 ///< of the line, or of the source
-  std::uint32_t priority = 0;       ///< 0 is the best of this map
+  std::string name;            ///< of the line, or of the source
+  std::uint32_t priority = 0;  ///< 0 is the best of this map
   PathPoints path;
   double length = 0.0;              ///< [m] the last s
   double remaining_distance = 0.0;  ///< [m] from the vehicle to the line's end; a lap on a closed line
@@ -92,7 +92,8 @@ struct Road {
 
 /// What is published: lanes left to right, or nothing and the reason.
 struct RelativeMap {
-  Time stamp{};
+  Time stamp{};          ///< the time that the geometry holds for
+  std::string frame_id;  ///< the body frame
   std::uint32_t sequence_num = 0;
   Status status;
   std::vector<Lane> lanes;

@@ -7,7 +7,9 @@ namespace relative_map {
 /// A point in time: nanoseconds since the epoch, exact as ROS stamps are.
 using Time = std::chrono::nanoseconds;
 
-inline double to_seconds(Time duration) { return std::chrono::duration<double>(duration).count(); }
+inline double to_seconds(Time duration) {
+  return std::chrono::duration<double>(duration).count();
+}
 inline Time from_seconds(double seconds) {
   return std::chrono::duration_cast<Time>(std::chrono::duration<double>(seconds));
 }

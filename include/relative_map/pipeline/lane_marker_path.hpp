@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "relative_map/model/config.hpp"
+#include "relative_map/pipeline/lane_path.hpp"
+
+namespace relative_map {
+
+/// The centerline between the vehicle's own lane markers, and what was seen of them.
+struct MarkerPath {
+  LanePath path;
+  double trusted_from = 0.0;                            ///< [m] s of the path from which on paint was seen
+  double trusted_to = 0.0;                              ///< [m] s of the path up to which paint was seen
+  std::optional<BoundaryType> left_paint, right_paint;  ///< none: not seen
+};
+
+/// The path between the markers, or why there is none.
+/// Its cubic is the mean of both (c0 plain, c1 to c3 by quality); one marker alone is followed at the default
+/// half width. It is sampled at x = -2, -1, 0 ... in the markers' frame up to a length proportional to
+/// `speed` [m/s]; past view_range the curvature fades to zero.
+/// `base_from_sensor`: the markers' frame, where it was at their stamp, as seen from base_link now.
+std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& markers,
+                                                       const Pose2& base_from_sensor, double speed,
+                                                       const MapParam& map_param,
+                                                       const NavigationLaneParam& param);
+
+}  // namespace relative_map

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "relative_map/geometry/path_point.hpp"
+#include "relative_map/model/inputs.hpp"
+
+namespace relative_map {
+
+/// One lane on its way through the stages: its centerline in the body frame and what is known of it.
+struct LanePath {
+  std::string id;
+  std::string name;
+  std::uint32_t priority = 0;
+  PathPoints points;              ///< s from 0
+  double s_at_vehicle = 0.0;      ///< [m] where the vehicle is beside it; outside the path: beyond its ends
+  double l = 0.0;                 ///< [m] of the vehicle, left of the path positive
+  double remaining = 0.0;         ///< [m] to the end of the line
+  double left_half_width = 0.0;   ///< [m] where no neighbour bounds it
+  double right_half_width = 0.0;  ///< [m] where no neighbour bounds it
+};
+
+/// Sets s_at_vehicle and l from the points: where the origin of the body frame is beside the path, or beside
+/// the tangent at an end that it lies beyond. The search starts at the first point.
+void locate_vehicle(LanePath& lane);
+
+Polyline positions_of(const PathPoints& points);
+
+}  // namespace relative_map

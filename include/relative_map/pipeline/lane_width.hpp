@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relative_map/pipeline/lane_path.hpp"
+
+namespace relative_map {
+
+/// The borders of the lanes of a map, from neighbours' spacing and half widths.
+struct LaneBorders {
+  std::vector<Polyline> left, right;  ///< per lane
+  std::vector<bool> left_is_shared;   ///< with the lane before, which is then a neighbour
+};
+
+/// Takes out lanes, or the rest of a lane, beside which a better one runs so near that the vehicle does not
+/// fit between the borders. Returns a sentence for each.
+/// `lanes` are ordered left to right; `half_width` [m] is the vehicle's.
+std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width);
+
+/// Lanes up to twice `max_half_width` [m] apart share the line midway between them; farther apart each keeps
+/// its own half width, with a gap between them. `lanes` are ordered left to right, none too narrow.
+LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_width);
+
+}  // namespace relative_map

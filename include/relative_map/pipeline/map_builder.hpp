@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "relative_map/model/config.hpp"
+#include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/lane_path.hpp"
+#include "relative_map/pipeline/lane_width.hpp"
+
+namespace relative_map {
+
+/// Paint seen beside the current lane, up to a distance [m] along it.
+struct SeenPaint {
+  BoundaryType left = BoundaryType::kUnknown;
+  BoundaryType right = BoundaryType::kUnknown;
+  double range = 0.0;
+};
+
+/// Lanes, boundaries, samples, neighbours and the road around them. `lanes` and `borders` belong together.
+/// Leaves stamp, sequence number and status to the caller.
+RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::size_t current,
+                      const SeenPaint& paint, const PipelineConfig& config);
+
+}  // namespace relative_map

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "relative_map/model/config.hpp"
+#include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/lane_marker_path.hpp"
+#include "relative_map/pipeline/map_builder.hpp"
+#include "relative_map/pipeline/navigation_line_tracker.hpp"
+#include "relative_map/pipeline/navigation_lines.hpp"
+#include "relative_map/pipeline/vehicle_state.hpp"
+
+namespace relative_map {
+
+/// The stages in order: from the newest inputs to a map. Not thread-safe: feed it and tick it on one thread.
+class RelativeMapPipeline {
+ public:
+  /// `config` must be valid (PipelineConfig::validate).
+  explicit RelativeMapPipeline(std::shared_ptr<const PipelineConfig> config) : config_(std::move(config)) {}
+
+  void set_config(std::shared_ptr<const PipelineConfig> config) { config_ = std::move(config); }
+  void set_navigation_lines(std::shared_ptr<const NavigationLines> lines);
+  /// Poses are those of the body frame (carry_to_base).
+  void set_localization(const Localization& base);
+  void set_chassis(const Chassis& chassis) { chassis_ = chassis; }
+  void set_lane_markers(const LaneMarkers& markers) { markers_ = markers; }
+  /// Forgets all but configuration and lines, as after a jump of the clock.
+  void reset();
+
+  /// The stamp of the pose that the next map would be for; none: no pose yet.
+  std::optional<Time> pose_stamp() const;
+  /// A map for the newest pose, or an empty one with the reason. `now` dates the inputs' ages.
+  RelativeMap tick(Time now);
+  /// An empty map that says why.
+  RelativeMap empty_map(Status status, Time stamp);
+
+  /// What the last tick noticed about lines and markers without giving up on the map, a sentence each.
+  const std::vector<std::string>& remarks() const { return remarks_; }
+
+ private:
+  struct Lanes;
+
+  std::variant<RelativeMap, Status> build(Time now);
+  std::variant<VehicleState, Status> vehicle_state(Time now) const;
+  std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
+  std::variant<Lanes, Status> lanes_of_lines(const VehicleState& vehicle);
+  std::size_t choose_current(const std::vector<LanePath>& lanes) const;
+  RelativeMap finish(Lanes lanes, const std::optional<MarkerPath>& markers, FusionState fusion,
+                     const VehicleState& vehicle);
+
+  std::shared_ptr<const PipelineConfig> config_;
+  std::shared_ptr<const NavigationLines> lines_;
+  std::vector<NavigationLineTracker> trackers_;  ///< one a line
+  std::optional<Localization> localization_;
+  std::optional<Chassis> chassis_;
+  std::optional<LaneMarkers> markers_;
+  PoseBuffer poses_;
+  std::string current_id_;  ///< of the last map
+  std::uint32_t sequence_num_ = 0;
+  std::vector<std::string> remarks_;
+};
+
+}  // namespace relative_map

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+#include <optional>
+#include <variant>
+
+#include "relative_map/geometry/pose2.hpp"
+#include "relative_map/model/inputs.hpp"
+#include "relative_map/model/map.hpp"
+
+namespace relative_map {
+
+/// Where base_link is and how it moves.
+struct VehicleState {
+  Time stamp{};
+  Pose2 map_from_base;
+  double speed = 0.0;     ///< [m/s] negative when reversing
+  double yaw_rate = 0.0;  ///< [rad/s]
+};
+
+/// The pose of base_link, given that of another link of the same rigid body; the velocity gets its lever
+/// arm: v_base = v_link + omega x r. Heading and orientation are those of base_link afterwards.
+Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& link_from_base);
+
+/// The plane view of a pose of base_link, or INVALID_LOCALIZATION with the field and the value.
+/// Speed is the chassis', else the velocity along the heading.
+std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
+                                                      const std::optional<Chassis>& chassis);
+
+/// The latest poses, to look up where the vehicle was when an image was taken.
+class PoseBuffer {
+ public:
+  /// A stamp at or before the newest one's replaces what came after it: time has been set back.
+  void add(const VehicleState& state);
+  /// Interpolated between poses, carried on by speed and yaw rate a little beyond them; none further out.
+  std::optional<Pose2> at(Time stamp) const;
+  void clear() { states_.clear(); }
+
+ private:
+  std::deque<VehicleState> states_;  ///< by rising stamp
+};
+
+}  // namespace relative_map

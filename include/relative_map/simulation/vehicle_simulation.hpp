@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "relative_map/model/inputs.hpp"
+#include "relative_map/simulation/drive_path.hpp"
+#include "relative_map/simulation/noise.hpp"
+#include "relative_map/simulation/speed_profile.hpp"
+#include "relative_map/simulation/wander.hpp"
+
+namespace relative_map {
+
+/// Standard deviations of white Gaussian noise.
+struct NoiseParam {
+  double localization_position = 0.02;  ///< [m] in x and in y
+  double localization_heading = 0.001;  ///< [rad]
+  double chassis_speed = 0.02;          ///< [m/s]
+  double marker_c0 = 0.02;              ///< [m]
+  double marker_c1 = 0.001;             ///< [-]
+};
+
+/// The paint beside the lane that is driven on, and how the camera sees it.
+struct PaintParam {
+  double lane_half_width = 1.75;  ///< [m]
+  double view_range = 50.0;       ///< [m]
+  double quality = 0.9;           ///< [0, 1] of markers that are seen
+  BoundaryType left_type = BoundaryType::kDottedWhite;
+  BoundaryType right_type = BoundaryType::kDottedWhite;
+};
+
+struct VehicleSimulationConfig {
+  std::uint64_t seed = 1;
+  double start_s = 0.0;             ///< [m] along the line
+  double wander = 0.2;              ///< [m] greatest lateral offset from the line
+  double wander_wavelength = 80.0;  ///< [m] of the slowest sway
+  SpeedParam speed;
+  PaintParam paint;
+  NoiseParam noise;
+
+  /// Every fault as one sentence that names the parameter and its value; empty: fit to run with.
+  std::vector<std::string> validate() const;
+};
+
+/// A vehicle that drives along a recorded line, and its sensors. No clock: time passes by step().
+/// The same line, config and calls give the same run.
+class VehicleSimulation {
+ public:
+  /// Starts at rest. Throws std::invalid_argument if `config` has faults or the line can't be driven on.
+  VehicleSimulation(const RecordedLine& line, const VehicleSimulationConfig& config);
+
+  /// Drives on for `dt` [s], 0 or more, with the acceleration's and the curves' limits on the speed. At the
+  /// end of an open line the vehicle stands; a lap goes on for ever.
+  void step(double dt);
+  bool at_end() const { return path_.ends == Ends::kOpen && s_ >= path_.length(); }
+  /// Puts the vehicle back to the start, at rest; time and noise go on.
+  void restart();
+
+  // The truth.
+  Time time() const { return time_; }  ///< since construction
+  Pose2 map_from_base() const { return {path_.origin + pose_.position(), pose_.heading()}; }
+  double speed() const { return speed_; }        ///< [m/s]
+  double yaw_rate() const { return yaw_rate_; }  ///< [rad/s]
+  double s() const { return s_; }                ///< [m] along the line
+  double l() const { return l_; }                ///< [m] to the left of the line
+  const DrivePath& path() const { return path_; }
+
+  // What the sensors say, stamped time(): each call draws new noise.
+  Localization measure_localization();
+  Chassis measure_chassis();
+  /// Cubics fitted to the paint as it is seen from the true pose. Where less of it than 5 m is left to see,
+  /// the marker has quality 0.
+  LaneMarkers measure_lane_markers();
+
+ private:
+  void advance(double dt);
+  void place();
+  LaneMarker measure_marker(double l, BoundaryType type);
+
+  VehicleSimulationConfig config_;
+  DrivePath path_;
+  SpeedProfile speed_profile_;
+  Wander wander_;
+  NoiseSource localization_noise_, chassis_noise_, marker_noise_;
+
+  Time time_{};
+  double s_ = 0.0;             ///< [m]
+  double driven_ = 0.0;        ///< [m] along the line, laps included
+  std::size_t vertex_ = 0;     ///< of the path, at or before s_
+  double l_ = 0.0;             ///< [m]
+  double advance_rate_ = 1.0;  ///< [-] of s by distance driven
+  Pose2 pose_;                 ///< in the path's frame
+  double speed_ = 0.0;         ///< [m/s]
+  double yaw_rate_ = 0.0;      ///< [rad/s]
+};
+
+}  // namespace relative_map

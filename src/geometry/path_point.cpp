@@ -1,0 +1,141 @@
+#include "relative_map/geometry/path_point.hpp"
+
+#include <algorithm>
+
+namespace relative_map {
+
+namespace {
+
+/// Signed curvature of the circle through three points; 0 where two of them coincide.
+double menger_curvature(const Point2& a, const Point2& b, const Point2& c) {
+  const double sides = (b - a).norm() * (c - b).norm() * (c - a).norm();
+  return sides > 0.0 ? 2.0 * cross(b - a, c - b) / sides : 0.0;
+}
+
+/// Direction, theta and kappa at b of the circle through a, b and c.
+void set_from_circle(const Point2& a, const Point2& b, const Point2& c, PathPoint& point) {
+  const Point2 before = b - a, after = c - b;
+  // On a circle the tangent halves the angle between chords of equal length; for others the turn is
+  // shared out by the chords' lengths, which is what weighting each chord by the other's square does.
+  const Point2 tangent = before * after.squaredNorm() + after * before.squaredNorm();
+  const Point2& fallback = before;  // a about-turn on the spot has no tangent
+  point.direction = (tangent.squaredNorm() > 0.0 ? tangent : fallback).normalized();
+  point.kappa = menger_curvature(a, b, c);
+}
+
+/// The tangent at the end of a chord of a circle, given the tangent at the other end: mirrored at the chord.
+Point2 mirrored(const Point2& direction, const Point2& chord) {
+  const Point2 axis = chord.normalized();
+  return 2.0 * axis.dot(direction) * axis - direction;
+}
+
+void set_open_ends(PathPoints& points) {
+  const std::size_t last = points.size() - 1;
+  const Point2 first_chord = points[1].position - points[0].position;
+  const Point2 last_chord = points[last].position - points[last - 1].position;
+  if (last == 1) {
+    points[0].direction = points[1].direction = first_chord.normalized();
+    points[0].kappa = points[1].kappa = 0.0;
+    return;
+  }
+  points[0].direction = mirrored(points[1].direction, first_chord);
+  points[0].kappa = points[1].kappa;
+  points[last].direction = mirrored(points[last - 1].direction, last_chord);
+  points[last].kappa = points[last - 1].kappa;
+}
+
+}  // namespace
+
+void compute_arc_length(PathPoints& points) {
+  double s = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0) s += (points[i].position - points[i - 1].position).norm();
+    points[i].s = s;
+  }
+}
+
+void compute_geometry(PathPoints& points, Ends ends, double lap_length) {
+  const std::size_t n = points.size();
+  const bool closed = ends == Ends::kClosed;
+  for (std::size_t i = closed ? 0 : 1; i + (closed ? 0 : 1) < n; ++i) {
+    const Point2& before = points[i == 0 ? n - 1 : i - 1].position;
+    const Point2& after = points[i + 1 == n ? 0 : i + 1].position;
+    set_from_circle(before, points[i].position, after, points[i]);
+  }
+  if (!closed) set_open_ends(points);
+  for (std::size_t i = 0; i < n; ++i) {
+    PathPoint& point = points[i];
+    point.theta = std::atan2(point.direction.y(), point.direction.x());
+    const std::size_t before = i == 0 ? (closed ? n - 1 : 0) : i - 1;
+    const std::size_t after = i + 1 == n ? (closed ? 0 : i) : i + 1;
+    double ds = points[after].s - points[before].s;
+    if (closed && (i == 0 || i + 1 == n)) ds += lap_length;
+    point.dkappa = (points[after].kappa - points[before].kappa) / ds;
+  }
+}
+
+PathPoint interpolate(const PathPoints& points, double s, std::size_t& hint) {
+  if (s <= points.front().s) {
+    hint = 0;
+    return points.front();
+  }
+  if (s >= points.back().s) {
+    hint = points.size() - 1;
+    return points.back();
+  }
+  while (hint > 0 && points[hint].s > s) --hint;
+  while (points[hint + 1].s <= s) ++hint;
+  const PathPoint& a = points[hint];
+  const PathPoint& b = points[hint + 1];
+  const double weight = (s - a.s) / (b.s - a.s);
+  PathPoint point;
+  point.position = a.position + weight * (b.position - a.position);
+  point.direction = (a.direction + weight * (b.direction - a.direction)).normalized();
+  point.theta = interpolate_angle(a.theta, b.theta, weight);
+  point.kappa = a.kappa + weight * (b.kappa - a.kappa);
+  point.dkappa = a.dkappa + weight * (b.dkappa - a.dkappa);
+  point.s = s;
+  return point;
+}
+
+Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point) {
+  const Point2 segment = b - a;
+  const double squared_length = segment.squaredNorm();
+  Foot foot;
+  if (squared_length > 0.0) {
+    foot.fraction = std::clamp((point - a).dot(segment) / squared_length, 0.0, 1.0);
+  }
+  foot.point = a + foot.fraction * segment;
+  foot.squared_distance = (point - foot.point).squaredNorm();
+  return foot;
+}
+
+Foot PolylineWalker::next(const Point2& point) {
+  enum class Step { kNone, kAhead, kBack } last_step = Step::kNone;
+  while (true) {
+    const Point2& a = polyline_[segment_];
+    const Point2 segment = polyline_[segment_ + 1] - a;
+    const double along = (point - a).dot(segment);
+    // A step that is taken back ends at the vertex between: the foot is there.
+    if (along > segment.squaredNorm() && segment_ + 2 < polyline_.size() && last_step != Step::kBack) {
+      ++segment_;
+      last_step = Step::kAhead;
+    } else if (along < 0.0 && segment_ > 0 && last_step != Step::kAhead) {
+      --segment_;
+      last_step = Step::kBack;
+    } else {
+      break;
+    }
+  }
+  Foot foot = project_on_segment(polyline_[segment_], polyline_[segment_ + 1], point);
+  foot.segment = segment_;
+  return foot;
+}
+
+double chord_length(const Polyline& points) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
+}  // namespace relative_map

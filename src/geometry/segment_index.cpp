@@ -1,0 +1,92 @@
+#include "relative_map/geometry/segment_index.hpp"
+
+#include <algorithm>
+#include <boost/geometry.hpp>
+#include <limits>
+
+namespace relative_map {
+
+namespace bg = boost::geometry;
+
+namespace {
+constexpr std::size_t kRunLength = 16;
+}
+
+SegmentIndex::SegmentIndex(const PathPoints& points, Ends ends)
+    : segments_(ends == Ends::kClosed ? points.size() : points.size() - 1) {
+  std::vector<Run> runs;
+  runs.reserve(segments_ / kRunLength + 1);
+  for (std::size_t first = 0; first < segments_; first += kRunLength) {
+    const std::size_t end = std::min(first + kRunLength, segments_);
+    Point2 low = points[first].position, high = low;
+    for (std::size_t i = first + 1; i <= end; ++i) {
+      const Point2& position = points[i % points.size()].position;
+      low = low.cwiseMin(position);
+      high = high.cwiseMax(position);
+    }
+    runs.emplace_back(Box({low.x(), low.y()}, {high.x(), high.y()}), first);
+  }
+  runs_ = {runs.begin(), runs.end()};  // packed: faster to build and to query than one by one
+}
+
+Foot SegmentIndex::project(const PathPoints& points, std::size_t segment, const Point2& point) const {
+  const std::size_t next = segment + 1 == points.size() ? 0 : segment + 1;
+  Foot foot = project_on_segment(points[segment].position, points[next].position, point);
+  foot.segment = segment;
+  return foot;
+}
+
+std::vector<Foot> SegmentIndex::passes(const PathPoints& points, const Point2& point,
+                                       double max_distance) const {
+  const double reach = max_distance * max_distance;
+  const Box around({point.x() - max_distance, point.y() - max_distance},
+                   {point.x() + max_distance, point.y() + max_distance});
+  std::vector<std::size_t> firsts;
+  for (auto run = runs_.qbegin(bg::index::intersects(around)); run != runs_.qend(); ++run) {
+    firsts.push_back(run->second);
+  }
+  std::sort(firsts.begin(), firsts.end());
+
+  std::vector<Foot> near;
+  for (const std::size_t first : firsts) {
+    for (std::size_t i = first; i < std::min(first + kRunLength, segments_); ++i) {
+      const Foot foot = project(points, i, point);
+      if (foot.squared_distance <= reach) near.push_back(foot);
+    }
+  }
+
+  const bool closed = segments_ == points.size();
+  const auto follows = [&](std::size_t a, std::size_t b) {
+    return b == a + 1 || (closed && a + 1 == segments_ && b == 0);
+  };
+  std::vector<Foot> minima;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const Foot& before = near[i == 0 ? near.size() - 1 : i - 1];
+    const Foot& after = near[i + 1 == near.size() ? 0 : i + 1];
+    // Of two segments that share the nearest vertex only the first counts: < behind, <= ahead.
+    const bool rises_behind =
+        !follows(before.segment, near[i].segment) || near[i].squared_distance < before.squared_distance;
+    const bool rises_ahead =
+        !follows(near[i].segment, after.segment) || near[i].squared_distance <= after.squared_distance;
+    if (rises_behind && rises_ahead) minima.push_back(near[i]);
+  }
+  return minima;
+}
+
+Foot SegmentIndex::nearest(const PathPoints& points, const Point2& point) const {
+  Foot best;
+  best.squared_distance = std::numeric_limits<double>::infinity();
+  const BoostPoint query(point.x(), point.y());
+  // Runs come by rising distance of their boxes: once a box is farther than the best foot, so is the rest.
+  for (auto run = runs_.qbegin(bg::index::nearest(query, static_cast<unsigned>(runs_.size())));
+       run != runs_.qend(); ++run) {
+    if (bg::comparable_distance(query, run->first) > best.squared_distance) break;
+    for (std::size_t i = run->second; i < std::min(run->second + kRunLength, segments_); ++i) {
+      const Foot foot = project(points, i, point);
+      if (foot.squared_distance < best.squared_distance) best = foot;
+    }
+  }
+  return best;
+}
+
+}  // namespace relative_map

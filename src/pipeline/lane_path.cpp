@@ -1,0 +1,30 @@
+#include "relative_map/pipeline/lane_path.hpp"
+
+namespace relative_map {
+
+void locate_vehicle(LanePath& lane) {
+  const PathPoints& points = lane.points;
+  const Point2 vehicle = Point2::Zero();
+  const auto ahead_of = [&](std::size_t i) {
+    return points[i].direction.dot(vehicle - points[i].position) > 0.0;
+  };
+  std::size_t i = 0;
+  while (i + 2 < points.size() && ahead_of(i + 1)) ++i;
+  const PathPoint &a = points[i], &b = points[i + 1];
+  Foot foot = project_on_segment(a.position, b.position, vehicle);
+  const bool beyond = foot.fraction <= 0.0 || foot.fraction >= 1.0;
+  const PathPoint& end = foot.fraction < 0.5 ? a : b;
+  const Point2 offset = vehicle - foot.point;
+  const Point2 direction = beyond ? end.direction : (b.position - a.position).normalized();
+  lane.s_at_vehicle = a.s + foot.fraction * (b.s - a.s) + (beyond ? direction.dot(offset) : 0.0);
+  lane.l = cross(direction, offset);
+}
+
+Polyline positions_of(const PathPoints& points) {
+  Polyline positions;
+  positions.reserve(points.size());
+  for (const PathPoint& point : points) positions.push_back(point.position);
+  return positions;
+}
+
+}  // namespace relative_map

@@ -1,0 +1,201 @@
+#include "relative_map/pipeline/lane_width.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace relative_map {
+
+namespace {
+
+enum class Side { kLeft = 1, kRight = -1 };
+
+constexpr double kSearchStep = 1.0;  // [m] between the places where narrowness is looked for
+constexpr double kShortestLane =
+    30.0;  // [m] ahead of the vehicle; what is left of a lane must be worth a change
+constexpr double kBlendLength = 10.0;  // [m] over which a border leaves the midline where the neighbour ends
+constexpr double kSharpestFold = 0.8;  // of the radius: a border farther inside a curve would fold
+constexpr double kJoinGap = 0.1;       // [m] nearer to the shared part no point is added
+
+/// What lies beside one vertex of a lane.
+struct Beside {
+  bool exists = false;   ///< false: the other lane does not reach here
+  Point2 point;          ///< of the other centerline
+  double spacing = 0.0;  ///< [m]
+  double s = 0.0;        ///< [m] along the other centerline
+};
+
+std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
+  const Polyline centerline = positions_of(other.points);
+  PolylineWalker walker(centerline);
+  std::vector<Beside> result;
+  result.reserve(lane.points.size());
+  for (const PathPoint& vertex : lane.points) {
+    const Foot foot = walker.next(vertex.position);
+    const double start = other.points[foot.segment].s, end = other.points[foot.segment + 1].s;
+    result.push_back({!walker.beyond_end(foot), foot.point, std::sqrt(foot.squared_distance),
+                      start + foot.fraction * (end - start)});
+  }
+  return result;
+}
+
+/// Arc length at which `lane` first comes too near to `better`; none: it never does.
+std::optional<double> first_narrow_place(const LanePath& lane, const LanePath& better, double spacing) {
+  const Polyline centerline = positions_of(better.points);
+  PolylineWalker walker(centerline);
+  double searched = -kSearchStep;
+  for (const PathPoint& vertex : lane.points) {
+    if (vertex.s < searched + kSearchStep) continue;
+    searched = vertex.s;
+    const Foot foot = walker.next(vertex.position);
+    if (!walker.beyond_end(foot) && foot.squared_distance < spacing * spacing) return vertex.s;
+  }
+  return std::nullopt;
+}
+
+std::string narrow_sentence(const LanePath& lane, const LanePath& better, const char* verb, double ahead) {
+  std::ostringstream sentence;
+  sentence.precision(3);
+  sentence << "line '" << lane.id << "' " << verb << ": " << std::max(0.0, ahead)
+           << " m ahead it comes so near to '" << better.id << "' that the vehicle does not fit";
+  return sentence.str();
+}
+
+/// One pass over the neighbours; true if a lane was taken out and the neighbours are others now.
+bool drop_one(std::vector<LanePath>& lanes, double half_width, std::vector<std::string>& sentences) {
+  for (std::size_t i = 0; i + 1 < lanes.size(); ++i) {
+    const std::size_t worse = lanes[i].priority > lanes[i + 1].priority ? i : i + 1;
+    const LanePath& better = lanes[worse == i ? i + 1 : i];
+    LanePath& lane = lanes[worse];
+    const std::optional<double> narrow = first_narrow_place(lane, better, 2.0 * half_width);
+    if (!narrow) continue;
+    const double ahead = *narrow - lane.s_at_vehicle;
+    if (ahead > kShortestLane) {
+      sentences.push_back(narrow_sentence(lane, better, "is cut short", ahead));
+      while (lane.points.back().s >= *narrow) lane.points.pop_back();
+      lane.remaining = lane.points.back().s - lane.s_at_vehicle;
+      continue;
+    }
+    sentences.push_back(narrow_sentence(lane, better, "is left out", ahead));
+    lanes.erase(lanes.begin() + static_cast<std::ptrdiff_t>(worse));
+    return true;
+  }
+  return false;
+}
+
+Point2 border_point(const PathPoint& vertex, double half_width, Side side) {
+  const double sign = static_cast<double>(side);
+  const double inward = vertex.kappa * sign;  // > 0: the curve turns to this side
+  if (inward * half_width > kSharpestFold) half_width = kSharpestFold / inward;
+  return vertex.position + sign * half_width * left_of(vertex.direction);
+}
+
+/// Where a neighbour has ended, the border swings from the midline to the lane's own half width.
+double half_width_past_neighbor(double own, double at_neighbor, double distance) {
+  const double t = std::min(1.0, distance / kBlendLength);
+  return at_neighbor + (own - at_neighbor) * t * t * (3.0 - 2.0 * t);
+}
+
+/// At its own half width, but never past the middle between it and the lane beside it.
+Polyline own_border(const LanePath& lane, const std::vector<Beside>& beside, double half_width, Side side) {
+  Polyline border;
+  border.reserve(lane.points.size());
+  for (std::size_t i = 0; i < lane.points.size(); ++i) {
+    const bool bounded = !beside.empty() && beside[i].exists;
+    const double width = bounded ? std::min(half_width, 0.5 * beside[i].spacing) : half_width;
+    border.push_back(border_point(lane.points[i], width, side));
+  }
+  return border;
+}
+
+/// The stretch of a lane's vertices that have the other lane beside them: [first, last].
+struct Stretch {
+  std::size_t first = 0, last = 0;
+};
+
+std::optional<Stretch> stretch_beside(const std::vector<Beside>& beside, double max_spacing) {
+  std::optional<Stretch> stretch;
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    if (!beside[i].exists) continue;
+    if (beside[i].spacing > max_spacing) return std::nullopt;
+    if (!stretch) stretch = Stretch{i, i};
+    stretch->last = i;
+  }
+  if (stretch && stretch->first == stretch->last) return std::nullopt;
+  return stretch;
+}
+
+struct SharedBorder {
+  Polyline of_left_lane, of_right_lane;
+};
+
+/// The midline, prolonged for each lane to its own ends.
+SharedBorder shared_border(const LanePath& left, const LanePath& right, const std::vector<Beside>& beside,
+                           const Stretch& stretch) {
+  const Beside &first = beside[stretch.first], &last = beside[stretch.last];
+  const double first_s = left.points[stretch.first].s, last_s = left.points[stretch.last].s;
+  SharedBorder border;
+  Polyline midline;
+  for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
+    midline.push_back(0.5 * (left.points[i].position + beside[i].point));
+  }
+
+  const auto prolong = [](const PathPoint& vertex, double own, Side side, double spacing, double distance) {
+    return border_point(vertex, half_width_past_neighbor(own, 0.5 * spacing, distance), side);
+  };
+  Polyline& of_left = border.of_left_lane;
+  Polyline& of_right = border.of_right_lane;
+  for (const PathPoint& vertex : left.points) {
+    if (vertex.s >= first_s) break;
+    of_left.push_back(
+        prolong(vertex, left.right_half_width, Side::kRight, first.spacing, first_s - vertex.s));
+  }
+  for (const PathPoint& vertex : right.points) {
+    if (vertex.s >= first.s - kJoinGap) break;
+    of_right.push_back(
+        prolong(vertex, right.left_half_width, Side::kLeft, first.spacing, first.s - vertex.s));
+  }
+  of_left.insert(of_left.end(), midline.begin(), midline.end());
+  of_right.insert(of_right.end(), midline.begin(), midline.end());
+  for (const PathPoint& vertex : left.points) {
+    if (vertex.s <= last_s) continue;
+    of_left.push_back(prolong(vertex, left.right_half_width, Side::kRight, last.spacing, vertex.s - last_s));
+  }
+  for (const PathPoint& vertex : right.points) {
+    if (vertex.s <= last.s + kJoinGap) continue;
+    of_right.push_back(prolong(vertex, right.left_half_width, Side::kLeft, last.spacing, vertex.s - last.s));
+  }
+  return border;
+}
+
+}  // namespace
+
+std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width) {
+  std::vector<std::string> sentences;
+  while (drop_one(lanes, half_width, sentences)) {
+  }
+  return sentences;
+}
+
+LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_width) {
+  const std::size_t n = lanes.size();
+  LaneBorders borders{std::vector<Polyline>(n), std::vector<Polyline>(n), std::vector<bool>(n, false)};
+  borders.left[0] = own_border(lanes[0], {}, lanes[0].left_half_width, Side::kLeft);
+  borders.right[n - 1] = own_border(lanes[n - 1], {}, lanes[n - 1].right_half_width, Side::kRight);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const LanePath &left = lanes[i], &right = lanes[i + 1];
+    const std::vector<Beside> beside = look_beside(left, right);
+    if (const std::optional<Stretch> stretch = stretch_beside(beside, 2.0 * max_half_width)) {
+      SharedBorder shared = shared_border(left, right, beside, *stretch);
+      borders.right[i] = std::move(shared.of_left_lane);
+      borders.left[i + 1] = std::move(shared.of_right_lane);
+      borders.left_is_shared[i + 1] = true;
+    } else {
+      borders.right[i] = own_border(left, beside, left.right_half_width, Side::kRight);
+      borders.left[i + 1] = own_border(right, look_beside(right, left), right.left_half_width, Side::kLeft);
+    }
+  }
+  return borders;
+}
+
+}  // namespace relative_map

@@ -1,0 +1,215 @@
+#include "relative_map/pipeline/navigation_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace relative_map {
+
+namespace {
+
+constexpr double kMinSpacing = 1e-3;    // [m] nearer vertices are one and the same
+constexpr double kMinLapLength = 30.0;  // [m] no vehicle drives a tighter circle
+constexpr double kMaxStitchTurn = 0.5;  // [rad] between the headings of the ends of a lap
+constexpr double kMaxSparseGap = 5.0;   // [m] along a sparsely sampled lap, from its last vertex to its first
+constexpr double kSeamBlendLength = 30.0;  // [m] over which a lap's closing error is spread
+
+/// Positions relative to the first point, with duplicates left out; a sentence if there are too few.
+std::string clean_positions(const RecordedLine& recorded, NavigationLine& line,
+                            std::vector<std::size_t>& kept) {
+  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
+    const LinePoint& point = recorded.points[i];
+    if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
+      return "point " + std::to_string(i) + " has a coordinate that is not finite";
+    }
+  }
+  if (recorded.points.empty()) return "it has no points";
+  line.origin = {recorded.points[0].x, recorded.points[0].y};
+  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
+    PathPoint point;
+    point.position = Point2(recorded.points[i].x, recorded.points[i].y) - line.origin;
+    if (!kept.empty() && (point.position - line.points.back().position).norm() < kMinSpacing) continue;
+    line.points.push_back(point);
+    kept.push_back(i);
+  }
+  return kept.size() < 2 ? "it has fewer than two distinct points" : "";
+}
+
+/// Drops what runs past the start, so that the stitch goes forward.
+void trim_overlap(PathPoints& points, double spacing) {
+  const PathPoint first = points.front();
+  while (points.size() > 3 &&
+         (first.position - points.back().position).dot(first.direction) < 0.3 * spacing) {
+    points.pop_back();
+  }
+}
+
+/// Spreads the sideways error at the seam over the end of the lap.
+void blend_seam(PathPoints& points, double length) {
+  const Point2 stitch = points.front().position - points.back().position;
+  const Point2 along = (points.front().direction + points.back().direction).normalized();
+  const double error = cross(along, stitch);
+  if (std::abs(error) < 0.01) return;
+  const double blend = std::min(kSeamBlendLength, length / 4.0);
+  for (PathPoint& point : points) {
+    const double u = 1.0 - (points.back().s - point.s) / blend;
+    if (u > 0.0) {
+      const double smooth = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+      point.position += error * smooth * left_of(point.direction);
+    }
+  }
+}
+
+/// Makes a lap of a line whose ends meet, side by side and in heading; false leaves it as it is.
+bool stitch(NavigationLine& line, double half_width) {
+  PathPoints& points = line.points;
+  if (points.size() < 4 || line.length < kMinLapLength) return false;
+  const double spacing = line.length / static_cast<double>(points.size() - 1);
+  const PathPoint &first = points.front(), &last = points.back();
+  const double turn = angle_difference(last.theta, first.theta);
+  const Point2 along = (first.direction + last.direction).normalized();
+  const Point2 gap = first.position - last.position;
+  const double gap_ahead = std::max(half_width, std::min(1.5 * spacing, kMaxSparseGap));
+  const bool ends_meet = std::abs(cross(along, gap)) <= half_width && gap.dot(along) <= gap_ahead &&
+                         gap.dot(along) >= -half_width;
+  if (!ends_meet || std::abs(turn) > kMaxStitchTurn) return false;
+
+  trim_overlap(points, spacing);
+  blend_seam(points, line.length);
+  compute_arc_length(points);
+  line.ends = Ends::kClosed;
+  line.length = points.back().s + (points.front().position - points.back().position).norm();
+  compute_geometry(points, Ends::kClosed, line.length);
+  return true;
+}
+
+/// Whether the recorded headings are those of the positions.
+bool headings_agree(const RecordedLine& recorded, const std::vector<std::size_t>& kept,
+                    const PathPoints& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double difference = angle_difference(recorded.points[kept[i]].theta, points[i].theta);
+    if (!(std::abs(difference) <= 0.005)) return false;
+  }
+  return true;
+}
+
+/// Whether the recorded curvatures are those of the headings: point by point, and summed up over a few
+/// metres.
+bool curvatures_agree(const RecordedLine& recorded, const std::vector<std::size_t>& kept,
+                      const PathPoints& points) {
+  std::size_t anchor = 0;
+  double turned = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double kappa = recorded.points[kept[i]].kappa;
+    if (!(std::abs(kappa - points[i].kappa) <= 0.005 + 0.1 * std::abs(points[i].kappa))) return false;
+    if (i == 0) continue;
+    turned += 0.5 * (kappa + recorded.points[kept[i - 1]].kappa) * (points[i].s - points[i - 1].s);
+    if (points[i].s - points[anchor].s < 5.0) continue;
+    if (std::abs(angle_difference(points[i].theta - points[anchor].theta, turned)) > 0.002) return false;
+    anchor = i;
+    turned = 0.0;
+  }
+  return true;
+}
+
+/// dkappa as recorded where all of it is finite and of a size with the curvature's changes.
+bool rates_agree(const RecordedLine& recorded, const std::vector<std::size_t>& kept,
+                 const PathPoints& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double difference = recorded.points[kept[i]].dkappa - points[i].dkappa;
+    if (!(std::abs(difference) <= 1e-3 + 0.1 * std::abs(points[i].dkappa))) return false;
+  }
+  return true;
+}
+
+/// Keeps the line's own theta, kappa and dkappa as far as they agree with its positions.
+void keep_recorded_geometry(const RecordedLine& recorded, const std::vector<std::size_t>& kept,
+                            NavigationLine& line) {
+  PathPoints& points = line.points;
+  if (!headings_agree(recorded, kept, points) || !curvatures_agree(recorded, kept, points)) return;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].theta = normalize_angle(recorded.points[kept[i]].theta);
+    points[i].direction = {std::cos(points[i].theta), std::sin(points[i].theta)};
+    points[i].kappa = recorded.points[kept[i]].kappa;
+  }
+  if (!rates_agree(recorded, kept, points)) return;
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].dkappa = recorded.points[kept[i]].dkappa;
+}
+
+/// The last segment may be of any length, so it does not count.
+bool spacing_varies(const PathPoints& points) {
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0.0;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const double ds = points[i].s - points[i - 1].s;
+    shortest = std::min(shortest, ds);
+    longest = std::max(longest, ds);
+  }
+  return longest > 2.0 * shortest;
+}
+
+/// A sentence if the line can't be driven on.
+std::string prepare(const RecordedLine& recorded, const IntakeParam& param, NavigationLine& line) {
+  std::vector<std::size_t> kept;
+  if (std::string fault = clean_positions(recorded, line, kept); !fault.empty()) return fault;
+  compute_arc_length(line.points);
+  compute_geometry(line.points);
+  line.length = line.points.back().s;
+  const bool stitched = param.stitch_closed_lines && stitch(line, param.lane_half_width);
+  if (!stitched) keep_recorded_geometry(recorded, kept, line);
+  line.thinned = spacing_varies(line.points);
+  line.index = SegmentIndex(line.points, line.ends);
+  return "";
+}
+
+/// By name where names tell lines apart, else by place in the message too.
+std::vector<std::string> make_ids(const std::vector<RecordedLine>& lines) {
+  std::map<std::string, int> uses;
+  for (const RecordedLine& line : lines) ++uses[line.name];
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool unique = !lines[i].name.empty() && uses[lines[i].name] == 1;
+    ids.push_back(unique ? lines[i].name : "line_" + std::to_string(i) + "_" + lines[i].name);
+  }
+  return ids;
+}
+
+/// Two lines of one priority would leave open which one yields: the later one moves back.
+void make_priorities_unique(NavigationLines& result) {
+  std::vector<NavigationLine*> order;
+  for (NavigationLine& line : result.lines) order.push_back(&line);
+  std::stable_sort(order.begin(), order.end(), [](const NavigationLine* a, const NavigationLine* b) {
+    return a->priority < b->priority;
+  });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (order[i]->priority > order[i - 1]->priority) continue;
+    order[i]->priority = order[i - 1]->priority + 1;
+    result.faults.push_back("line '" + order[i]->id +
+                            "' shares its priority with another: it now has priority " +
+                            std::to_string(order[i]->priority));
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const NavigationLines> prepare_navigation_lines(const NavigationInfo& info,
+                                                                const IntakeParam& param) {
+  auto result = std::make_shared<NavigationLines>();
+  result->frame_id = info.frame_id;
+  const std::vector<std::string> ids = make_ids(info.lines);
+  for (std::size_t i = 0; i < info.lines.size(); ++i) {
+    NavigationLine line;
+    line.id = ids[i];
+    line.name = info.lines[i].name;
+    line.priority = info.lines[i].priority;
+    if (const std::string fault = prepare(info.lines[i], param, line); !fault.empty()) {
+      result->faults.push_back("line '" + line.id + "' is left out: " + fault);
+      continue;
+    }
+    result->lines.push_back(std::move(line));
+  }
+  make_priorities_unique(*result);
+  return result;
+}
+
+}  // namespace relative_map

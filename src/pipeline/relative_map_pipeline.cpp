@@ -1,0 +1,211 @@
+#include "relative_map/pipeline/relative_map_pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "relative_map/pipeline/lane_fusion.hpp"
+#include "relative_map/pipeline/navigation_line_window.hpp"
+
+namespace relative_map {
+
+namespace {
+
+constexpr double kHysteresis = 0.3;  // [m] by which another lane must be nearer to become the current one
+
+std::string seconds_text(Time duration) {
+  std::ostringstream text;
+  text.precision(3);
+  text << to_seconds(duration) << " s";
+  return text.str();
+}
+
+}  // namespace
+
+/// Lanes left to right, and the one that the vehicle is on.
+struct RelativeMapPipeline::Lanes {
+  std::vector<LanePath> paths;
+  std::size_t current = 0;
+};
+
+void RelativeMapPipeline::set_navigation_lines(std::shared_ptr<const NavigationLines> lines) {
+  lines_ = std::move(lines);
+  trackers_.assign(lines_->lines.size(), NavigationLineTracker());
+}
+
+void RelativeMapPipeline::set_localization(const Localization& base) {
+  localization_ = base;
+  const auto state = make_vehicle_state(base, chassis_);
+  if (const auto* vehicle = std::get_if<VehicleState>(&state)) poses_.add(*vehicle);
+}
+
+void RelativeMapPipeline::reset() {
+  localization_.reset();
+  chassis_.reset();
+  markers_.reset();
+  poses_.clear();
+  current_id_.clear();
+  for (NavigationLineTracker& tracker : trackers_) tracker.reset();
+}
+
+std::optional<Time> RelativeMapPipeline::pose_stamp() const {
+  if (!localization_) return std::nullopt;
+  return localization_->stamp;
+}
+
+RelativeMap RelativeMapPipeline::tick(Time now) {
+  remarks_.clear();
+  std::variant<RelativeMap, Status> built = build(now);
+  if (auto* status = std::get_if<Status>(&built)) {
+    return empty_map(std::move(*status), pose_stamp().value_or(now));
+  }
+  RelativeMap& map = std::get<RelativeMap>(built);
+  map.sequence_num = ++sequence_num_;
+  return std::move(map);
+}
+
+RelativeMap RelativeMapPipeline::empty_map(Status status, Time stamp) {
+  RelativeMap map;
+  map.stamp = stamp;
+  map.frame_id = config_->base_frame;
+  map.status = std::move(status);
+  map.sequence_num = ++sequence_num_;
+  return map;
+}
+
+std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
+  const auto state = vehicle_state(now);
+  if (const auto* status = std::get_if<Status>(&state)) return *status;
+  const VehicleState& vehicle = std::get<VehicleState>(state);
+  const std::optional<MarkerPath> markers = marker_path(vehicle, now);
+
+  Status no_lines{StatusCode::kMarkersUnusable,
+                  "lane_source is PERCEPTION, and the lane markers are unusable"};
+  if (config_->navigation_lane.lane_source == LaneSource::kOfflineGenerated) {
+    auto found = lanes_of_lines(vehicle);
+    if (auto* lanes = std::get_if<Lanes>(&found)) {
+      FusionState fusion;
+      fusion.source = Source::kNavigationLine;
+      if (markers) {
+        fusion = fuse_fixed_weight(*markers, config_->navigation_lane.lane_marker_weight,
+                                   config_->lane_fusion.fade_length, lanes->paths[lanes->current]);
+      }
+      return finish(std::move(*lanes), markers, std::move(fusion), vehicle);
+    }
+    no_lines = std::get<Status>(found);
+  }
+  if (!markers) {
+    for (const std::string& remark : remarks_) no_lines.message += "; " + remark;
+    return no_lines;
+  }
+  FusionState fusion;
+  fusion.source = Source::kLaneMarkers;
+  fusion.marker_range = std::max(0.0, markers->trusted_to - markers->path.s_at_vehicle);
+  return finish({{markers->path}, 0}, markers, std::move(fusion), vehicle);
+}
+
+std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) const {
+  if (!localization_) return Status{StatusCode::kNoLocalization, "no localization received yet"};
+  const Time age = now - localization_->stamp;
+  if (to_seconds(age) > config_->max_age.localization) {
+    return Status{StatusCode::kStaleLocalization, "the newest localization is " + seconds_text(age) + " old"};
+  }
+  const bool chassis_is_old = chassis_ && to_seconds(now - chassis_->stamp) > config_->max_age.chassis;
+  return make_vehicle_state(*localization_, chassis_is_old ? std::nullopt : chassis_);
+}
+
+std::optional<MarkerPath> RelativeMapPipeline::marker_path(const VehicleState& vehicle, Time now) {
+  const auto unusable = [&](const std::string& why) {
+    remarks_.push_back("lane markers: " + why);
+    return std::nullopt;
+  };
+  if (!markers_) return unusable("none received yet");
+  const Time age = now - markers_->stamp;
+  if (to_seconds(age) > config_->max_age.lane_markers)
+    return unusable("they are " + seconds_text(age) + " old");
+  const std::optional<Pose2> seen_from = poses_.at(markers_->stamp);
+  if (!seen_from) return unusable("no pose is known for their stamp");
+  const Pose2 base_from_sensor =
+      vehicle.map_from_base.to_local(*seen_from).to_parent(markers_->base_from_sensor);
+  auto made = make_marker_path(*markers_, base_from_sensor, vehicle.speed, config_->map_param,
+                               config_->navigation_lane);
+  if (const auto* why = std::get_if<std::string>(&made)) return unusable(*why);
+  return std::get<MarkerPath>(std::move(made));
+}
+
+std::variant<RelativeMapPipeline::Lanes, Status> RelativeMapPipeline::lanes_of_lines(
+    const VehicleState& vehicle) {
+  if (!lines_ || lines_->lines.empty()) {
+    Status status{StatusCode::kNoNavigationLine,
+                  lines_ ? "no usable navigation line" : "no navigation line received yet"};
+    if (lines_)
+      for (const std::string& fault : lines_->faults) status.message += "; " + fault;
+    return status;
+  }
+  Lanes lanes;
+  Status dropped{StatusCode::kOffRoute, "no navigation line is in reach"};
+  for (std::size_t i = 0; i < lines_->lines.size(); ++i) {
+    const NavigationLine& line = lines_->lines[i];
+    const auto tracked =
+        trackers_[i].track(line, vehicle, config_->navigation_lane.max_distance_to_navigation_line);
+    if (const auto* drop = std::get_if<LineDrop>(&tracked)) {
+      const std::string remark = "line '" + line.id + "': " + drop->reason;
+      remarks_.push_back(remark);
+      if (drop->code == StatusCode::kLineEnd)
+        dropped = {StatusCode::kLineEnd, "the end of the line is reached"};
+      continue;
+    }
+    LanePath path = cut_window(line, std::get<LineProjection>(tracked), vehicle.map_from_base,
+                               config_->navigation_lane.max_len_from_navigation_line);
+    path.left_half_width = config_->map_param.default_left_width;
+    path.right_half_width = config_->map_param.default_right_width;
+    lanes.paths.push_back(std::move(path));
+  }
+  if (lanes.paths.empty()) return dropped;
+  // The vehicle lies left of a line by l, so the leftmost line has the smallest l.
+  std::stable_sort(lanes.paths.begin(), lanes.paths.end(),
+                   [](const LanePath& a, const LanePath& b) { return a.l < b.l; });
+  for (std::string& remark : drop_narrow_lanes(lanes.paths, config_->footprint.half_width)) {
+    remarks_.push_back(std::move(remark));
+  }
+  lanes.current = choose_current(lanes.paths);
+  return lanes;
+}
+
+std::size_t RelativeMapPipeline::choose_current(const std::vector<LanePath>& lanes) const {
+  std::size_t current = 0;
+  const auto distance = [&](std::size_t i) {
+    return std::abs(lanes[i].l) - (lanes[i].id == current_id_ ? kHysteresis : 0.0);
+  };
+  for (std::size_t i = 1; i < lanes.size(); ++i) {
+    if (distance(i) < distance(current)) current = i;
+  }
+  return current;
+}
+
+RelativeMap RelativeMapPipeline::finish(Lanes lanes, const std::optional<MarkerPath>& markers,
+                                        FusionState fusion, const VehicleState& vehicle) {
+  SeenPaint paint;
+  if (markers) {
+    paint = {markers->left_paint.value_or(BoundaryType::kUnknown),
+             markers->right_paint.value_or(BoundaryType::kUnknown), markers->trusted_to};
+    fusion.marker_age = std::max(0.0, to_seconds(vehicle.stamp - markers_->stamp));
+  }
+  const double s_at_vehicle = lanes.paths[lanes.current].s_at_vehicle;
+  LaneBorders borders = find_borders(lanes.paths, config_->navigation_lane.max_lane_half_width);
+  RelativeMap map = build_map(std::move(lanes.paths), std::move(borders), lanes.current, paint, *config_);
+  map.stamp = vehicle.stamp;
+  const Lane& current = map.lanes[lanes.current];
+  const auto beside_vehicle = [&](const std::vector<WidthSample>& samples) {
+    const auto after = std::find_if(samples.begin(), samples.end(),
+                                    [&](const WidthSample& sample) { return sample.s >= s_at_vehicle; });
+    return after == samples.end() ? samples.back().width : after->width;
+  };
+  fusion.left_half_width.value = beside_vehicle(current.left_samples);
+  fusion.right_half_width.value = beside_vehicle(current.right_samples);
+  map.fusion = std::move(fusion);
+  current_id_ = map.current_lane_id;
+  return map;
+}
+
+}  // namespace relative_map

@@ -1,0 +1,113 @@
+#include "relative_map/pipeline/vehicle_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace relative_map {
+
+namespace {
+
+constexpr Time kKept = std::chrono::seconds(3);                     // of poses
+constexpr Time kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
+
+bool usable(const Eigen::Quaterniond& q) {
+  return q.coeffs().allFinite() && q.norm() > 1e-6;
+}
+
+double yaw_of(const Eigen::Quaterniond& q) {
+  const Eigen::Vector3d forward = q.normalized() * Eigen::Vector3d::UnitX();
+  return std::atan2(forward.y(), forward.x());
+}
+
+/// Counter-clockwise from east; NaN where neither heading nor orientation gives it.
+double heading_of(const Localization& localization) {
+  if (std::isfinite(localization.heading)) return normalize_angle(localization.heading);
+  return usable(localization.map_from_body) ? yaw_of(localization.map_from_body)
+                                            : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Roll and pitch from the orientation, yaw from the heading, which is the better one where both are given.
+Eigen::Quaterniond attitude_of(const Localization& localization) {
+  const double heading = heading_of(localization);
+  if (!usable(localization.map_from_body)) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
+  }
+  const Eigen::Quaterniond q = localization.map_from_body.normalized();
+  return Eigen::AngleAxisd(heading - yaw_of(q), Eigen::Vector3d::UnitZ()) * q;
+}
+
+Status invalid(const std::string& field, double value) {
+  std::ostringstream sentence;
+  sentence << "localization: " << field << " is " << value;
+  return {StatusCode::kInvalidLocalization, sentence.str()};
+}
+
+/// Constant speed and yaw rate over `seconds`, which may be negative: the arc's chord at its mean heading.
+Pose2 carried_on(const VehicleState& state, double seconds) {
+  const double turn = state.yaw_rate * seconds;
+  const double half = 0.5 * turn;
+  const double chord = state.speed * seconds * (std::abs(half) > 1e-6 ? std::sin(half) / half : 1.0);
+  return state.map_from_base.to_parent(Pose2(chord * Point2(std::cos(half), std::sin(half)), turn));
+}
+
+}  // namespace
+
+Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& link_from_base) {
+  Localization base = link;
+  const Eigen::Quaterniond map_from_link = attitude_of(link);
+  const Eigen::Vector3d arm = map_from_link * link_from_base.translation();
+  const Eigen::Quaterniond link_from_base_rotation(link_from_base.rotation());
+  base.position = link.position + arm;
+  base.map_from_body = map_from_link * link_from_base_rotation;
+  base.heading = yaw_of(base.map_from_body);
+  base.angular_velocity_body = link_from_base_rotation.inverse() * link.angular_velocity_body;
+  const Eigen::Vector3d omega = map_from_link * link.angular_velocity_body;
+  if (omega.allFinite()) base.linear_velocity = link.linear_velocity + omega.cross(arm);
+  return base;
+}
+
+std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
+                                                      const std::optional<Chassis>& chassis) {
+  if (!std::isfinite(base.position.x())) return invalid("pose.position.x", base.position.x());
+  if (!std::isfinite(base.position.y())) return invalid("pose.position.y", base.position.y());
+  const double heading = heading_of(base);
+  if (!std::isfinite(heading)) {
+    return Status{StatusCode::kInvalidLocalization,
+                  "localization: neither pose.heading nor pose.orientation gives a direction"};
+  }
+  VehicleState state;
+  state.stamp = base.stamp;
+  state.map_from_base = Pose2(base.position.head<2>(), heading);
+  const double along = base.linear_velocity.head<2>().dot(state.map_from_base.forward());
+  state.speed = chassis ? chassis->speed : (std::isfinite(along) ? along : 0.0);
+  const double yaw_rate = base.angular_velocity_body.z();
+  state.yaw_rate = std::isfinite(yaw_rate) ? yaw_rate : 0.0;
+  return state;
+}
+
+void PoseBuffer::add(const VehicleState& state) {
+  while (!states_.empty() && states_.back().stamp >= state.stamp) states_.pop_back();
+  states_.push_back(state);
+  while (states_.front().stamp < state.stamp - kKept) states_.pop_front();
+}
+
+std::optional<Pose2> PoseBuffer::at(Time stamp) const {
+  if (states_.empty()) return std::nullopt;
+  const auto after = std::lower_bound(states_.begin(), states_.end(), stamp,
+                                      [](const VehicleState& state, Time t) { return state.stamp < t; });
+  if (after != states_.end() && after->stamp == stamp) return after->map_from_base;
+  if (after == states_.begin() || after == states_.end()) {
+    const VehicleState& end = after == states_.end() ? states_.back() : states_.front();
+    const Time beyond = stamp - end.stamp;
+    if (beyond > kMaxExtrapolation || -beyond > kMaxExtrapolation) return std::nullopt;
+    return carried_on(end, to_seconds(beyond));
+  }
+  const VehicleState &a = *(after - 1), &b = *after;
+  const double weight = to_seconds(stamp - a.stamp) / to_seconds(b.stamp - a.stamp);
+  const Point2 moved = b.map_from_base.position() - a.map_from_base.position();
+  return Pose2(a.map_from_base.position() + weight * moved,
+               interpolate_angle(a.map_from_base.heading(), b.map_from_base.heading(), weight));
+}
+
+}  // namespace relative_map

@@ -1,0 +1,41 @@
+#include "relative_map/simulation/paint.hpp"
+
+#include <Eigen/QR>
+#include <cmath>
+
+namespace relative_map {
+
+namespace {
+
+constexpr double kSpacing = 1.0;        // [m]
+constexpr double kMaxTurnCosine = 0.7;  // 45 degrees
+
+}  // namespace
+
+Polyline visible_paint(const DrivePath& path, double s, double l, const Pose2& base, double view_range) {
+  Polyline seen;
+  std::size_t vertex = 0;
+  for (double ahead = 0.0; path.ends == Ends::kClosed || s + ahead <= path.length(); ahead += kSpacing) {
+    const PathPoint point = interpolate(path.points, path.hold(s + ahead), vertex);
+    if (point.direction.dot(base.forward()) < kMaxTurnCosine) break;
+    seen.push_back(base.to_local(point.position + l * left_of(point.direction)));
+    if (seen.back().x() > view_range) break;
+  }
+  return seen;
+}
+
+Cubic fit_cubic(const Polyline& points) {
+  const double scale = points.back().x();  // x up to 1, so that its powers are of one size
+  Eigen::MatrixX4d powers(points.size(), 4);
+  Eigen::VectorXd y(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = points[i].x() / scale;
+    const auto row = static_cast<Eigen::Index>(i);
+    powers.row(row) << 1.0, x, x * x, x * x * x;
+    y[row] = points[i].y();
+  }
+  const Eigen::Vector4d c = powers.householderQr().solve(y);
+  return {c[0], c[1] / scale, c[2] / (scale * scale), c[3] / (scale * scale * scale)};
+}
+
+}  // namespace relative_map
