@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relative_map/model/map.hpp"
+
+namespace relative_map {
+
+/// A broken row of the output contract, with the lane and the numbers.
+struct Violation {
+  std::string row;
+  std::string what;
+};
+
+/// What a map is held against besides itself.
+struct MapContext {
+  std::string frame_id = "base_link";
+  std::optional<std::uint32_t> previous_sequence_num;  ///< of the map published before
+};
+
+/// The names of all rows, in the order in which they are checked.
+std::vector<std::string> map_check_rows();
+
+/// Every broken row of the output contract, the first fault of each; empty: the map may be published.
+/// Rows that compare geometry are checked only where every number is finite and every path is a path.
+std::vector<Violation> check_map(const RelativeMap& map, const MapContext& context);
+
+}  // namespace relative_map
