@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -138,4 +138,4 @@ double chord_length(const Polyline& points) {
   return length;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

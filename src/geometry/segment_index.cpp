@@ -4,7 +4,7 @@
 #include <boost/geometry.hpp>
 #include <limits>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace bg = boost::geometry;
 
@@ -89,4 +89,4 @@ Foot SegmentIndex::nearest(const PathPoints& points, const Point2& point) const 
   return best;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -129,4 +129,4 @@ void write_navigation_line(const std::string& path, const RecordedLine& line) {
   }
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

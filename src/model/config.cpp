@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -87,4 +87,4 @@ std::vector<std::string> PipelineConfig::validate() const {
   return faults.take();
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -86,4 +86,4 @@ FusionState fuse_fixed_weight(const MarkerPath& markers, double weight, double f
   return state;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

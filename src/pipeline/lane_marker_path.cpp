@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -157,4 +157,4 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
   return result;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -1,6 +1,6 @@
 #include "relative_map/pipeline/lane_path.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 void locate_vehicle(LanePath& lane) {
   const PathPoints& points = lane.points;
@@ -27,4 +27,4 @@ Polyline positions_of(const PathPoints& points) {
   return positions;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -198,4 +198,4 @@ LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_wid
   return borders;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -100,4 +100,4 @@ RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::siz
   return map;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

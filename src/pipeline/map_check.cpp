@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -343,4 +343,4 @@ std::vector<Violation> check_map(const RelativeMap& map, const MapContext& conte
   return violations;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::variant<LineProjection, LineDrop> NavigationLineTracker::track(const Naviga
   return pass.projection;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

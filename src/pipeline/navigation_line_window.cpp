@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -85,4 +85,4 @@ LanePath cut_window(const NavigationLine& line, const LineProjection& projection
   return path;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -212,4 +212,4 @@ std::shared_ptr<const NavigationLines> prepare_navigation_lines(const Navigation
   return result;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -7,7 +7,7 @@
 #include "relative_map/pipeline/lane_fusion.hpp"
 #include "relative_map/pipeline/navigation_line_window.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -208,4 +208,4 @@ RelativeMap RelativeMapPipeline::finish(Lanes lanes, const std::optional<MarkerP
   return map;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

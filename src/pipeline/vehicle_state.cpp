@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::optional<Pose2> PoseBuffer::at(Time stamp) const {
                interpolate_angle(a.map_from_base.heading(), b.map_from_base.heading(), weight));
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -6,7 +6,7 @@
 
 #include "relative_map/pipeline/navigation_lines.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 double DrivePath::hold(double s) const {
   if (ends == Ends::kOpen) return std::clamp(s, 0.0, length());
@@ -32,4 +32,4 @@ DrivePath make_drive_path(const RecordedLine& recorded) {
   return path;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

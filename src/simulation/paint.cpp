@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -38,4 +38,4 @@ Cubic fit_cubic(const Polyline& points) {
   return {c[0], c[1] / scale, c[2] / (scale * scale), c[3] / (scale * scale * scale)};
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace relative_map {
+namespace relative_map::core {
 
 Point2 Road::Piece::position_after(double distance) const {
   // Ten Gauss points integrate a turn of 1 rad to the last digit, so panels are made of that size. It holds
@@ -135,4 +135,4 @@ Road closed_road(const Pose2& start) {
   return road;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -70,4 +70,4 @@ Road parse_road(const std::string& text, const Pose2& start) {
   return road;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

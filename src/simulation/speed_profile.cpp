@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace relative_map {
+namespace relative_map::core {
 
 SpeedProfile::SpeedProfile(const DrivePath& path, const SpeedParam& param) {
   for (const PathPoint& point : path.points) {
@@ -29,4 +29,4 @@ double SpeedProfile::limit(double s, std::size_t vertex) const {
   return std::sqrt(before.squared_speed + weight * (after.squared_speed - before.squared_speed));
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -8,7 +8,7 @@
 
 #include "relative_map/simulation/paint.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 namespace {
 
@@ -59,6 +59,10 @@ VehicleSimulation::VehicleSimulation(const RecordedLine& line, const VehicleSimu
       localization_noise_(config.seed, 0),
       chassis_noise_(config.seed, 1),
       marker_noise_(config.seed, 2) {
+  if (path_.ends == Ends::kOpen && config.start_s >= path_.length()) {
+    throw std::invalid_argument("start_s lies beyond the end of the line, which is " +
+                                std::to_string(path_.length()) + " m long");
+  }
   restart();
 }
 
@@ -141,4 +145,4 @@ LaneMarkers VehicleSimulation::measure_lane_markers() {
   return measured;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

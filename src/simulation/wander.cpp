@@ -5,7 +5,7 @@
 
 #include "relative_map/geometry/angles.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 Wander::Wander(double amplitude, double wavelength, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
@@ -27,4 +27,4 @@ Wander::Sway Wander::at(double distance) const {
   return sway;
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace relative_map {
+namespace relative_map::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,4 +151,4 @@ TEST_F(NavigationLineFile, AFailedWriteLeavesWhatWasThere) {
 }
 
 }  // namespace
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -8,7 +8,7 @@
 
 #include "relative_map/simulation/road_description.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 namespace {
 
 /// The clothoid's position by Simpson's rule in steps far finer than its turns: an independent quadrature.
@@ -180,4 +180,4 @@ TEST(RoadDescription, NamesTheFaultyPiece) {
 }
 
 }  // namespace
-}  // namespace relative_map
+}  // namespace relative_map::core

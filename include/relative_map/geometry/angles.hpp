@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace relative_map {
+namespace relative_map::core {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -23,4 +23,4 @@ inline double interpolate_angle(double a, double b, double weight) {
   return normalize_angle(a + weight * angle_difference(b, a));
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

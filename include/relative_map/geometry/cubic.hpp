@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// y(x) = c0 + c1 x + c2 x^2 + c3 x^3, all in [m].
 struct Cubic {
@@ -18,4 +18,4 @@ struct Cubic {
   }
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -4,7 +4,7 @@
 
 #include "relative_map/geometry/pose2.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// A vertex of a path with the geometry of the curve there. The frame is the path's.
 struct PathPoint {
@@ -66,4 +66,4 @@ class PolylineWalker {
 
 double chord_length(const Polyline& points);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -5,7 +5,7 @@
 
 #include "relative_map/geometry/angles.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 using Point2 = Eigen::Vector2d;
 
@@ -55,4 +55,4 @@ class Pose2 {
   Point2 forward_ = Point2::UnitX();
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

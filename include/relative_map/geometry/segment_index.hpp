@@ -8,7 +8,7 @@
 
 #include "relative_map/geometry/path_point.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// Finds the places where a path passes by a point, in logarithmic time.
 /// Runs of segments share one box of the R-tree: it is built faster, and a query still looks at few.
@@ -36,4 +36,4 @@ class SegmentIndex {
   std::size_t segments_ = 0;
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -4,7 +4,7 @@
 
 #include "relative_map/model/inputs.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// Navigation lines in files, as Apollo's tools write them (`.smoothed`): one JSON object a line with x, y
 /// and, where known, z, s [m], theta [rad], kappa [1/m], dkappa [1/m^2], in the ENU map frame.
@@ -20,4 +20,4 @@ RecordedLine read_navigation_line(const std::string& path);
 /// file beside it is renamed into place. Throws std::runtime_error if that fails, or a point lacks x or y.
 void write_navigation_line(const std::string& path, const RecordedLine& line);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

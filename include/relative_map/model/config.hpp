@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace relative_map {
+namespace relative_map::core {
 
 enum class LaneSource { kOfflineGenerated, kPerception };
 
@@ -62,4 +62,4 @@ struct PipelineConfig {
   std::vector<std::string> validate() const;
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -9,7 +9,7 @@
 #include "relative_map/geometry/pose2.hpp"
 #include "relative_map/model/time.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// A vertex of a recorded line, ENU map frame; NaN: not given.
 struct LinePoint {
@@ -76,4 +76,4 @@ struct Localization {
   Eigen::Vector3d angular_velocity_body = Eigen::Vector3d::Zero();    ///< [rad/s] FLU
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -7,7 +7,7 @@
 #include "relative_map/geometry/path_point.hpp"
 #include "relative_map/model/inputs.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// Numbers of the message MapStatus.
 enum class StatusCode : std::uint8_t {
@@ -102,4 +102,4 @@ struct RelativeMap {
   FusionState fusion;
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

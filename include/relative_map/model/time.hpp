@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// A point in time: nanoseconds since the epoch, exact as ROS stamps are.
 using Time = std::chrono::nanoseconds;
@@ -14,4 +14,4 @@ inline Time from_seconds(double seconds) {
   return std::chrono::duration_cast<Time>(std::chrono::duration<double>(seconds));
 }
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -7,7 +7,7 @@
 #include "relative_map/model/config.hpp"
 #include "relative_map/pipeline/lane_path.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// The centerline between the vehicle's own lane markers, and what was seen of them.
 struct MarkerPath {
@@ -27,4 +27,4 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
                                                        const MapParam& map_param,
                                                        const NavigationLaneParam& param);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

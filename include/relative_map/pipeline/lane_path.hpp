@@ -6,7 +6,7 @@
 #include "relative_map/geometry/path_point.hpp"
 #include "relative_map/model/inputs.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// One lane on its way through the stages: its centerline in the body frame and what is known of it.
 struct LanePath {
@@ -27,4 +27,4 @@ void locate_vehicle(LanePath& lane);
 
 Polyline positions_of(const PathPoints& points);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -6,7 +6,7 @@
 
 #include "relative_map/pipeline/lane_path.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// The borders of the lanes of a map, from neighbours' spacing and half widths.
 struct LaneBorders {
@@ -23,4 +23,4 @@ std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double 
 /// its own half width, with a gap between them. `lanes` are ordered left to right, none too narrow.
 LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_width);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

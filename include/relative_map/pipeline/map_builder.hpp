@@ -8,7 +8,7 @@
 #include "relative_map/pipeline/lane_path.hpp"
 #include "relative_map/pipeline/lane_width.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// Paint seen beside the current lane, up to a distance [m] along it.
 struct SeenPaint {
@@ -22,4 +22,4 @@ struct SeenPaint {
 RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::size_t current,
                       const SeenPaint& paint, const PipelineConfig& config);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

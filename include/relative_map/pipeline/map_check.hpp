@@ -7,7 +7,7 @@
 
 #include "relative_map/model/map.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// A broken row of the output contract, with the lane and the numbers.
 struct Violation {
@@ -28,4 +28,4 @@ std::vector<std::string> map_check_rows();
 /// Rows that compare geometry are checked only where every number is finite and every path is a path.
 std::vector<Violation> check_map(const RelativeMap& map, const MapContext& context);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -7,7 +7,7 @@
 #include "relative_map/pipeline/navigation_lines.hpp"
 #include "relative_map/pipeline/vehicle_state.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// The vehicle's place on a line.
 struct LineProjection {
@@ -49,4 +49,4 @@ class NavigationLineTracker {
   std::optional<Place> last_;
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

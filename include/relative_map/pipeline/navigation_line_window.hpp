@@ -3,7 +3,7 @@
 #include "relative_map/pipeline/lane_path.hpp"
 #include "relative_map/pipeline/navigation_line_tracker.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// The part of a line around the vehicle, in the body frame: the line's own vertices from three before the
 /// nearest one (on thinned lines at least 2 m before it) to the first one past `max_length` [m].
@@ -11,4 +11,4 @@ namespace relative_map {
 LanePath cut_window(const NavigationLine& line, const LineProjection& projection, const Pose2& map_from_base,
                     double max_length);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -8,7 +8,7 @@
 #include "relative_map/geometry/segment_index.hpp"
 #include "relative_map/model/inputs.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// A recorded line, ready to be driven on.
 struct NavigationLine {
@@ -43,4 +43,4 @@ struct IntakeParam {
 std::shared_ptr<const NavigationLines> prepare_navigation_lines(const NavigationInfo& info,
                                                                 const IntakeParam& param);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -15,7 +15,7 @@
 #include "relative_map/pipeline/navigation_lines.hpp"
 #include "relative_map/pipeline/vehicle_state.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// The stages in order: from the newest inputs to a map. Not thread-safe: feed it and tick it on one thread.
 class RelativeMapPipeline {
@@ -65,4 +65,4 @@ class RelativeMapPipeline {
   std::vector<std::string> remarks_;
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

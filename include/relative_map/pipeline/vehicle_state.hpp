@@ -9,7 +9,7 @@
 #include "relative_map/model/inputs.hpp"
 #include "relative_map/model/map.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// Where base_link is and how it moves.
 struct VehicleState {
@@ -41,4 +41,4 @@ class PoseBuffer {
   std::deque<VehicleState> states_;  ///< by rising stamp
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

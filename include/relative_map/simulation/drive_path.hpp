@@ -4,7 +4,7 @@
 #include "relative_map/geometry/pose2.hpp"
 #include "relative_map/model/inputs.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// The line that a simulated vehicle drives along.
 struct DrivePath {
@@ -22,4 +22,4 @@ struct DrivePath {
 /// Throws std::invalid_argument with the reason if it can't be driven on.
 DrivePath make_drive_path(const RecordedLine& line);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

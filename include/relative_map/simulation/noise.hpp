@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// Gaussian noise of one sensor, the same for the same seed, whatever the other sensors draw.
 class NoiseSource {
@@ -21,4 +21,4 @@ class NoiseSource {
   std::normal_distribution<double> normal_;
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -5,7 +5,7 @@
 #include "relative_map/geometry/pose2.hpp"
 #include "relative_map/simulation/drive_path.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// What a camera in the body frame sees of the paint that runs l [m] beside a path: a point each metre, from
 /// the path's s [m] to the first one past `view_range` [m] in x, or to where the path ends or has turned so
@@ -15,4 +15,4 @@ Polyline visible_paint(const DrivePath& path, double s, double l, const Pose2& b
 /// The cubic with the least squared distances in y from four or more points of rising x.
 Cubic fit_cubic(const Polyline& points);
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -8,7 +8,7 @@
 #include "relative_map/geometry/pose2.hpp"
 #include "relative_map/model/inputs.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// A road's reference curve, made of straights, clothoids and arcs that follow each other with one tangent,
 /// and the lanes parallel to it. Known to 1e-9 m on kilometres, so tests can take it for the truth.
@@ -72,4 +72,4 @@ Road demo_road(const Pose2& start = {});
 /// A stadium of 757 m, driven counter-clockwise: its end is its start.
 Road closed_road(const Pose2& start = {});
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -4,7 +4,7 @@
 
 #include "relative_map/simulation/road.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// The road that a text describes: "demo", "closed", or pieces separated by ';', each of them
 /// "straight LENGTH", "arc LENGTH [KAPPA]" or "clothoid LENGTH [KAPPA_START] KAPPA_END" in [m] and [1/m],
@@ -12,4 +12,4 @@ namespace relative_map {
 /// Throws std::invalid_argument with a sentence that names the faulty piece.
 Road parse_road(const std::string& text, const Pose2& start = {});
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -5,7 +5,7 @@
 
 #include "relative_map/simulation/drive_path.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 struct SpeedParam {
   double max_speed = 15.0;                ///< [m/s]
@@ -31,4 +31,4 @@ class SpeedProfile {
   std::vector<Limit> limits_;  ///< by vertex of the path
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

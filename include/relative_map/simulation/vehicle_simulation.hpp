@@ -11,7 +11,7 @@
 #include "relative_map/simulation/speed_profile.hpp"
 #include "relative_map/simulation/wander.hpp"
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// Standard deviations of white Gaussian noise.
 struct NoiseParam {
@@ -96,4 +96,4 @@ class VehicleSimulation {
   double yaw_rate_ = 0.0;      ///< [rad/s]
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace relative_map {
+namespace relative_map::core {
 
 /// How a driver sways in the lane: a smooth lateral offset by distance driven, a sum of slow sines whose
 /// phases come from the seed. By distance, not time, so that a standing vehicle stands still.
@@ -28,4 +28,4 @@ class Wander {
   std::array<Sine, 3> sines_;
 };
 
-}  // namespace relative_map
+}  // namespace relative_map::core
