@@ -85,7 +85,7 @@ build_workspace() {
   mkdir -p "$workspace/src/relative_map" "$build_root/log"
   touch "$build_root/CATKIN_IGNORE"
   discard_foreign_cache "$workspace"
-  say "Building in ${workspace#"$package_root"/} (minutes at first, seconds later; log: ${log#"$package_root"/})"
+  say "Building ${workspace#"$package_root"/} $* (minutes at first, seconds later; log: ${log#"$package_root"/})"
   (
     flock 9
     link_sources "$workspace/src/relative_map"
@@ -97,12 +97,13 @@ build_workspace() {
   }
 }
 
-# link_sources FOLDER: fills it with links to all of the package but build/, which a link to the package would lead back to.
+# link_sources FOLDER: fills it with folders and links to files, like the package's but without build/. (A link to the
+# whole package would lead back to itself, and CMake would install a link to a folder as that.)
 link_sources() {
   local entry
-  find "$1" -mindepth 1 -maxdepth 1 -type l -delete
+  find "$1" -xtype l -delete # of files that are no more
   for entry in "$package_root"/*; do
-    [[ $entry == "$build_root" ]] || ln -s "../../../../${entry##*/}" "$1/"
+    [[ $entry == "$build_root" ]] || cp -asn "$entry" "$1/"
   done
 }
 
