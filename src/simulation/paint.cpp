@@ -1,6 +1,7 @@
 #include "relative_map/simulation/paint.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 namespace relative_map::core {
@@ -9,6 +10,13 @@ namespace {
 
 constexpr double kSpacing = 1.0;        // [m]
 constexpr double kMaxTurnCosine = 0.7;  // 45 degrees
+constexpr double kMaxResidual = 0.05;   // [m] of a cubic that follows the paint
+
+bool follows(const Cubic& cubic, const Polyline& points) {
+  return std::all_of(points.begin(), points.end(), [&](const Point2& point) {
+    return std::abs(cubic.value(point.x()) - point.y()) <= kMaxResidual;
+  });
+}
 
 }  // namespace
 
@@ -36,6 +44,15 @@ Cubic fit_cubic(const Polyline& points) {
   }
   const Eigen::Vector4d c = powers.householderQr().solve(y);
   return {c[0], c[1] / scale, c[2] / (scale * scale), c[3] / (scale * scale * scale)};
+}
+
+FittedPaint fit_paint(Polyline points) {
+  while (points.size() >= 4) {
+    const Cubic cubic = fit_cubic(points);
+    if (follows(cubic, points)) return {cubic, points.back().x()};
+    points.resize(points.size() - 1 - points.size() / 20);  // fine steps: the range should not jump
+  }
+  return {};
 }
 
 }  // namespace relative_map::core

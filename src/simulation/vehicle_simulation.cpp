@@ -118,7 +118,8 @@ Localization VehicleSimulation::measure_localization() {
 Chassis VehicleSimulation::measure_chassis() {
   Chassis measured;
   measured.stamp = time_;
-  measured.speed = speed_ + chassis_noise_.draw(config_.noise.chassis_speed);
+  // Wheel sensors tell no direction: noise does not make a standing vehicle reverse.
+  measured.speed = std::abs(speed_ + chassis_noise_.draw(config_.noise.chassis_speed));
   return measured;
 }
 
@@ -126,14 +127,14 @@ LaneMarker VehicleSimulation::measure_marker(double l, BoundaryType type) {
   const double error_c0 = marker_noise_.draw(config_.noise.marker_c0);
   const double error_c1 = marker_noise_.draw(config_.noise.marker_c1);
   LaneMarker marker;
-  const Polyline paint = visible_paint(path_, s_, l, pose_, config_.paint.view_range);
-  if (paint.empty() || paint.back().x() < kMinVisiblePaint) return marker;
+  const FittedPaint paint = fit_paint(visible_paint(path_, s_, l, pose_, config_.paint.view_range));
+  if (paint.range < kMinVisiblePaint) return marker;
   marker.type = type;
   marker.quality = config_.paint.quality;
-  marker.cubic = fit_cubic(paint);
+  marker.cubic = paint.cubic;
   marker.cubic.c0 += error_c0;
   marker.cubic.c1 += error_c1;
-  marker.view_range = std::min(config_.paint.view_range, paint.back().x());
+  marker.view_range = std::min(config_.paint.view_range, paint.range);
   return marker;
 }
 

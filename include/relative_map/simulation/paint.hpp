@@ -15,4 +15,13 @@ Polyline visible_paint(const DrivePath& path, double s, double l, const Pose2& b
 /// The cubic with the least squared distances in y from four or more points of rising x.
 Cubic fit_cubic(const Polyline& points);
 
+struct FittedPaint {
+  Cubic cubic;
+  double range = 0.0;  ///< [m] x up to which the cubic follows the paint; 0: too little is seen to fit one
+};
+
+/// Fits a cubic to as much of the paint as it can follow to 5 cm, from the near end on: a bend in which a
+/// straight becomes a sharp curve is no cubic, and the near part matters more.
+FittedPaint fit_paint(Polyline points);
+
 }  // namespace relative_map::core
