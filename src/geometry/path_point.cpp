@@ -110,26 +110,35 @@ Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point) {
   return foot;
 }
 
+bool PolylineWalker::past_start(std::size_t segment, const Point2& point) const {
+  return (point - polyline_[segment]).dot(polyline_[segment + 1] - polyline_[segment]) > 0.0;
+}
+
+bool PolylineWalker::past_end(std::size_t segment, const Point2& point) const {
+  return (point - polyline_[segment + 1]).dot(polyline_[segment + 1] - polyline_[segment]) > 0.0;
+}
+
 Foot PolylineWalker::next(const Point2& point) {
-  enum class Step { kNone, kAhead, kBack } last_step = Step::kNone;
-  while (true) {
-    const Point2& a = polyline_[segment_];
-    const Point2 segment = polyline_[segment_ + 1] - a;
-    const double along = (point - a).dot(segment);
-    // A step that is taken back ends at the vertex between: the foot is there.
-    if (along > segment.squaredNorm() && segment_ + 2 < polyline_.size() && last_step != Step::kBack) {
-      ++segment_;
-      last_step = Step::kAhead;
-    } else if (along < 0.0 && segment_ > 0 && last_step != Step::kAhead) {
-      --segment_;
-      last_step = Step::kBack;
-    } else {
-      break;
-    }
+  const std::size_t last = polyline_.size() - 2, start = segment_;
+  while (segment_ < last && past_end(segment_, point)) ++segment_;
+  if (segment_ == start) {
+    while (segment_ > 0 && !past_start(segment_, point)) --segment_;
   }
-  Foot foot = project_on_segment(polyline_[segment_], polyline_[segment_ + 1], point);
-  foot.segment = segment_;
-  return foot;
+  Foot best = project_on_segment(polyline_[segment_], polyline_[segment_ + 1], point);
+  const auto take_if_nearer = [&](std::size_t segment) {
+    const Foot foot = project_on_segment(polyline_[segment], polyline_[segment + 1], point);
+    if (foot.squared_distance >= best.squared_distance) return false;
+    best = foot;
+    segment_ = segment;
+    return true;
+  };
+  // On the inside of a curve the point lies beside several segments at once: the nearest one counts.
+  while (segment_ < last && past_start(segment_ + 1, point) && take_if_nearer(segment_ + 1)) {
+  }
+  while (segment_ > 0 && !past_end(segment_ - 1, point) && take_if_nearer(segment_ - 1)) {
+  }
+  best.segment = segment_;
+  return best;
 }
 
 double chord_length(const Polyline& points) {

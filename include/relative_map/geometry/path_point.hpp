@@ -60,6 +60,9 @@ class PolylineWalker {
   }
 
  private:
+  bool past_start(std::size_t segment, const Point2& point) const;
+  bool past_end(std::size_t segment, const Point2& point) const;
+
   const Polyline& polyline_;
   std::size_t segment_ = 0;
 };
