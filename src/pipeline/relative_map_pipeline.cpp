@@ -57,7 +57,10 @@ RelativeMap RelativeMapPipeline::tick(Time now) {
   remarks_.clear();
   std::variant<RelativeMap, Status> built = build(now);
   if (auto* status = std::get_if<Status>(&built)) {
-    return empty_map(std::move(*status), pose_stamp().value_or(now));
+    // Without a pose that holds, the statement is about now.
+    const bool has_pose =
+        status->code != StatusCode::kNoLocalization && status->code != StatusCode::kStaleLocalization;
+    return empty_map(std::move(*status), has_pose ? localization_->stamp : now);
   }
   RelativeMap& map = std::get<RelativeMap>(built);
   map.sequence_num = ++sequence_num_;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+
+#include <map>
+#include <string>
+
+#include "relative_map/model/map.hpp"
+
+namespace relative_map {
+
+/// What /diagnostics tells of the maps.
+struct MapStatistics {
+  core::RelativeMap last_map;  ///< without its lanes' geometry
+  std::size_t lanes = 0;
+  double lateral_offset = 0.0;      ///< [m] of the vehicle from the current lane
+  double remaining_distance = 0.0;  ///< [m]
+  double tick_time = 0.0;           ///< [s] of the last tick
+  std::size_t maps = 0;
+  std::map<std::string, std::size_t> empty_maps;  ///< by reason
+};
+
+/// Name of a status code as in MapStatus.
+std::string status_name(core::StatusCode code);
+/// Name of a source as in FusionState.
+std::string source_name(core::Source source);
+
+/// OK, WARN or ERROR with one plain sentence, and the numbers behind it. A pure function of the statistics.
+void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticStatusWrapper& status);
+
+}  // namespace relative_map

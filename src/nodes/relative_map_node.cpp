@@ -1,0 +1,16 @@
+// The stand-alone node: a shell around RelativeMapNode.
+#include <ros/ros.h>
+
+#include "relative_map/ros/relative_map_node.hpp"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "relative_map");
+  try {
+    relative_map::RelativeMapNode node{ros::NodeHandle(), ros::NodeHandle("~")};
+    ros::spin();
+  } catch (const std::exception& fault) {
+    ROS_FATAL_STREAM(fault.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,234 @@
+// Runs the node's own pipeline over a bag: no master, no clock, and the same maps each time.
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "relative_map/ros/diagnostics.hpp"
+#include "relative_map/ros/map_engine.hpp"
+
+namespace relative_map {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: rosrun relative_map replay IN.bag OUT.bag [--config FILE] [--urdf FILE]\n"
+    "\n"
+    "Plays the inputs in IN.bag (navigation, localization, chassis, perception/lane_markers, tf_static) "
+    "through\n"
+    "the map's pipeline and writes the maps to OUT.bag on /relative_map, each at its tick's time.\n"
+    "\n"
+    "  --config FILE   parameters as in config/relative_map.yaml\n"
+    "  --urdf FILE     the vehicle, for its footprint\n";
+
+struct Arguments {
+  std::string input, output, config, urdf;
+};
+
+/// A call that can't be carried out as it was written.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+Arguments parse(const std::vector<std::string>& words) {
+  Arguments arguments;
+  std::vector<std::string> files;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--config" || words[i] == "--urdf") {
+      if (i + 1 == words.size()) throw UsageError(words[i] + " needs a file");
+      (words[i] == "--config" ? arguments.config : arguments.urdf) = words[i + 1];
+      ++i;
+    } else if (words[i].rfind("--", 0) == 0) {
+      throw UsageError("unknown option " + words[i]);
+    } else {
+      files.push_back(words[i]);
+    }
+  }
+  if (files.size() != 2) throw UsageError("two bags are needed: IN.bag and OUT.bag");
+  arguments.input = files[0];
+  arguments.output = files[1];
+  if (arguments.input == arguments.output) throw UsageError("IN.bag and OUT.bag are the same file");
+  return arguments;
+}
+
+std::string read_file(const std::string& file) {
+  std::ifstream stream(file);
+  std::stringstream text;
+  if (!stream || !(text << stream.rdbuf())) throw std::runtime_error(file + ": can't be read");
+  return text.str();
+}
+
+/// A bar on a terminal; silent elsewhere.
+class ProgressBar {
+ public:
+  explicit ProgressBar(double length) : length_(length), shown_(isatty(STDERR_FILENO) != 0) {}
+  ~ProgressBar() {
+    if (shown_) std::fputs("\n", stderr);
+  }
+  void show(double done) {
+    const int percent = length_ > 0.0 ? static_cast<int>(100.0 * done / length_) : 100;
+    if (!shown_ || percent == last_percent_) return;
+    last_percent_ = percent;
+    const std::string bar(static_cast<std::size_t>(percent / 2), '#');
+    std::fprintf(stderr, "\r[%-50s] %3d %%", bar.c_str(), percent);
+  }
+
+ private:
+  double length_;
+  bool shown_;
+  int last_percent_ = -1;
+};
+
+/// Deletes a half-written file, unless it was kept.
+class PartFile {
+ public:
+  explicit PartFile(std::string target) : target_(std::move(target)), part_(target_ + ".part") {}
+  ~PartFile() { std::remove(part_.c_str()); }
+  const std::string& path() const { return part_; }
+  void keep() {
+    if (std::rename(part_.c_str(), target_.c_str()) != 0) {
+      throw std::runtime_error(target_ + ": can't be written");
+    }
+  }
+
+ private:
+  std::string target_, part_;
+};
+
+class Replay {
+ public:
+  Replay(const NodeConfig& config, const rosbag::Bag& input, rosbag::Bag& output)
+      : config_(config), input_(input), output_(output), engine_(config, link_transforms(transforms_)) {}
+
+  void run() {
+    load_static_transforms();
+    rosbag::View view(input_, [](const rosbag::ConnectionInfo* connection) {
+      const std::string topic = frame_name(connection->topic);
+      return topic == "navigation" || topic == "localization" || topic == "chassis" ||
+             topic == "perception/lane_markers";
+    });
+    if (view.size() == 0) {
+      throw std::runtime_error(
+          "the bag has none of the topics /navigation, /localization, /chassis, /perception/lane_markers");
+    }
+    const ros::Time start = view.getBeginTime();
+    ProgressBar progress((view.getEndTime() - start).toSec());
+    std::uint64_t tick = 0;
+    // Computed from the start each time: a sum of periods would drift.
+    const auto tick_time = [&] { return start + ros::Duration(static_cast<double>(tick) / config_.rate); };
+    for (const rosbag::MessageInstance& message : view) {
+      for (; tick_time() < message.getTime(); ++tick) publish(tick_time());
+      deliver(message);
+      progress.show((message.getTime() - start).toSec());
+    }
+    for (; tick_time() <= view.getEndTime(); ++tick) publish(tick_time());
+  }
+
+  void print_summary(double seconds) const {
+    std::printf("%zu maps, %zu of them empty, in %.2f s\n", maps_, empty_, seconds);
+    for (const auto& [reason, count] : reasons_) std::printf("  %s: %zu\n", reason.c_str(), count);
+  }
+
+ private:
+  void load_static_transforms() {
+    for (const rosbag::MessageInstance& message :
+         rosbag::View(input_, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}))) {
+      const auto transforms = message.instantiate<tf2_msgs::TFMessage>();
+      if (!transforms) continue;
+      for (const auto& transform : transforms->transforms) transforms_.setTransform(transform, "bag", true);
+    }
+  }
+
+  void deliver(const rosbag::MessageInstance& message) {
+    const ros::Time received = message.getTime();
+    if (const auto lines = message.instantiate<NavigationInfo>()) {
+      const auto prepared = MapEngine::prepare(*lines, config_.pipeline);
+      for (const std::string& fault : prepared->faults) std::cerr << "navigation: " << fault << "\n";
+      engine_.set_navigation_lines(prepared);
+    } else if (const auto localization = message.instantiate<LocalizationEstimate>()) {
+      engine_.on_localization(localization, received);
+    } else if (const auto chassis = message.instantiate<Chassis>()) {
+      engine_.on_chassis(chassis, received);
+    } else if (const auto markers = message.instantiate<LaneMarkers>()) {
+      engine_.on_lane_markers(markers, received);
+    } else if (mistyped_.insert({message.getTopic(), message.getDataType()}).second) {
+      std::cerr << message.getTopic() << " has type " << message.getDataType()
+                << ", which is not read from it\n";
+    }
+  }
+
+  void publish(const ros::Time& now) {
+    const MapMsgPtr map = engine_.tick(now);
+    if (!map) return;
+    output_.write("/relative_map", now, *map);
+    ++maps_;
+    if (map->status.code == MapStatus::OK) return;
+    ++empty_;
+    ++reasons_[status_name(static_cast<core::StatusCode>(map->status.code))];
+  }
+
+  const NodeConfig& config_;
+  const rosbag::Bag& input_;
+  rosbag::Bag& output_;
+  tf2::BufferCore transforms_;
+  MapEngine engine_;
+  std::size_t maps_ = 0, empty_ = 0;
+  std::map<std::string, std::size_t> reasons_;
+  std::map<std::string, std::string> mistyped_;  ///< topic to type
+};
+
+void run(const Arguments& arguments) {
+  const ParameterSet parameters = arguments.config.empty() ? ParameterSet() : read_yaml(arguments.config);
+  const std::string urdf = arguments.urdf.empty() ? "" : read_file(arguments.urdf);
+  const NodeConfig config = make_node_config(parameters, urdf);
+
+  PartFile part(arguments.output);
+  rosbag::Bag input, output;
+  try {
+    input.open(arguments.input, rosbag::bagmode::Read);
+  } catch (const rosbag::BagException& fault) {
+    throw std::runtime_error(arguments.input + ": not a readable bag: " + fault.what());
+  }
+  try {
+    output.open(part.path(), rosbag::bagmode::Write);
+  } catch (const rosbag::BagException& fault) {
+    throw std::runtime_error(arguments.output + ": can't be written: " + fault.what());
+  }
+  Replay replay(config, input, output);
+  const auto start = std::chrono::steady_clock::now();
+  replay.run();
+  output.close();
+  part.keep();
+  replay.print_summary(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace
+}  // namespace relative_map
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
+    std::cout << relative_map::kUsage;
+    return 0;
+  }
+  try {
+    relative_map::run(relative_map::parse(words));
+  } catch (const relative_map::UsageError& fault) {
+    std::cerr << "replay: " << fault.what() << "\n\n" << relative_map::kUsage;
+    return 2;
+  } catch (const std::exception& fault) {
+    std::cerr << "replay: " << fault.what() << "\n";
+    return 1;
+  }
+  return 0;
+}

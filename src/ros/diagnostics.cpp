@@ -1,0 +1,88 @@
+#include "relative_map/ros/diagnostics.hpp"
+
+namespace relative_map {
+
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+unsigned char level_of(core::StatusCode code) {
+  // Nothing received yet and the end of a line are states that every drive passes through.
+  switch (code) {
+    case core::StatusCode::kOk:
+      return DiagnosticStatus::OK;
+    case core::StatusCode::kNoLocalization:
+    case core::StatusCode::kNoNavigationLine:
+    case core::StatusCode::kLineEnd:
+      return DiagnosticStatus::WARN;
+    default:
+      return DiagnosticStatus::ERROR;
+  }
+}
+
+}  // namespace
+
+std::string status_name(core::StatusCode code) {
+  switch (code) {
+    case core::StatusCode::kOk:
+      return "OK";
+    case core::StatusCode::kNoLocalization:
+      return "NO_LOCALIZATION";
+    case core::StatusCode::kStaleLocalization:
+      return "STALE_LOCALIZATION";
+    case core::StatusCode::kInvalidLocalization:
+      return "INVALID_LOCALIZATION";
+    case core::StatusCode::kNoNavigationLine:
+      return "NO_NAVIGATION_LINE";
+    case core::StatusCode::kOffRoute:
+      return "OFF_ROUTE";
+    case core::StatusCode::kLineEnd:
+      return "LINE_END";
+    case core::StatusCode::kMarkersUnusable:
+      return "MARKERS_UNUSABLE";
+    case core::StatusCode::kFrameMismatch:
+      return "FRAME_MISMATCH";
+    case core::StatusCode::kNoTransform:
+      return "NO_TRANSFORM";
+    case core::StatusCode::kContractViolation:
+      return "CONTRACT_VIOLATION";
+  }
+  return "UNKNOWN";
+}
+
+std::string source_name(core::Source source) {
+  switch (source) {
+    case core::Source::kNone:
+      return "NONE";
+    case core::Source::kFused:
+      return "FUSED";
+    case core::Source::kNavigationLine:
+      return "NAVIGATION_LINE";
+    case core::Source::kLaneMarkers:
+      return "LANE_MARKERS";
+  }
+  return "UNKNOWN";
+}
+
+void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const core::RelativeMap& map = statistics.last_map;
+  if (statistics.maps == 0) {
+    status.summary(DiagnosticStatus::WARN, "no map published yet");
+  } else if (map.status.code == core::StatusCode::kOk) {
+    status.summary(DiagnosticStatus::OK,
+                   std::to_string(statistics.lanes) + " lanes from " + source_name(map.fusion.source));
+  } else {
+    status.summary(level_of(map.status.code), status_name(map.status.code) + ": " + map.status.message);
+  }
+  status.add("source", source_name(map.fusion.source));
+  status.add("current lane", map.current_lane_id);
+  status.add("lateral offset [m]", statistics.lateral_offset);
+  status.add("remaining distance [m]", statistics.remaining_distance);
+  status.add("marker range [m]", map.fusion.marker_range);
+  status.add("marker age [s]", map.fusion.marker_age);
+  status.add("tick time [ms]", 1e3 * statistics.tick_time);
+  status.add("maps", statistics.maps);
+  for (const auto& [reason, count] : statistics.empty_maps) status.add("empty maps, " + reason, count);
+}
+
+}  // namespace relative_map

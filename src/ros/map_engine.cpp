@@ -1,0 +1,121 @@
+#include "relative_map/ros/map_engine.hpp"
+
+namespace relative_map {
+
+namespace {
+
+core::Pose2 planar(const Eigen::Isometry3d& transform) {
+  const Eigen::Vector3d forward = transform.rotation() * Eigen::Vector3d::UnitX();
+  return {transform.translation().head<2>(), std::atan2(forward.y(), forward.x())};
+}
+
+std::string link_of(const std::string& frame_id, const std::string& base_frame) {
+  return frame_id.empty() ? base_frame : frame_name(frame_id);
+}
+
+}  // namespace
+
+MapEngine::MapEngine(const NodeConfig& config, LinkTransforms transforms)
+    : config_(std::make_shared<core::PipelineConfig>(config.pipeline)),
+      convention_(config.orientation_convention),
+      transforms_(std::move(transforms)),
+      pipeline_(config_) {}
+
+std::shared_ptr<const core::NavigationLines> MapEngine::prepare(const NavigationInfo& message,
+                                                                const core::PipelineConfig& config) {
+  core::IntakeParam param;
+  param.stitch_closed_lines = config.enable_cyclic_rerouting;
+  param.lane_half_width = std::min(config.map_param.default_left_width, config.map_param.default_right_width);
+  return core::prepare_navigation_lines(to_core(message), param);
+}
+
+void MapEngine::set_navigation_lines(std::shared_ptr<const core::NavigationLines> lines) {
+  lines_ = lines;
+  pipeline_.set_navigation_lines(std::move(lines));
+}
+
+void MapEngine::set_config(const core::PipelineConfig& config) {
+  config_ = std::make_shared<core::PipelineConfig>(config);
+  pipeline_.set_config(config_);
+}
+
+void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, const ros::Time& received) {
+  localization_ = message;
+  const std::string link = link_of(message->child_frame_id, config_->base_frame);
+  const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_->base_frame);
+  localization_has_transform_ = link_from_base.has_value();
+  if (!link_from_base) return;
+  const core::Localization localization = to_core(*message, convention_, received);
+  const bool is_base = link == config_->base_frame;
+  pipeline_.set_localization(is_base ? localization : core::carry_to_base(localization, *link_from_base));
+}
+
+void MapEngine::on_chassis(const ChassisConstPtr& message, const ros::Time& received) {
+  pipeline_.set_chassis(to_core(*message, received));
+}
+
+void MapEngine::on_lane_markers(const LaneMarkersConstPtr& message, const ros::Time& received) {
+  markers_ = message;
+  const std::string frame = link_of(message->header.frame_id, config_->base_frame);
+  const std::optional<Eigen::Isometry3d> base_from_sensor = transforms_(config_->base_frame, frame);
+  if (!base_from_sensor) {
+    marker_fault_ =
+        "lane markers are dropped: no transform from '" + frame + "' to '" + config_->base_frame + "'";
+    return;
+  }
+  marker_fault_.clear();
+  pipeline_.set_lane_markers(to_core(*message, planar(*base_from_sensor), received));
+}
+
+std::optional<core::Status> MapEngine::frame_fault() const {
+  if (!localization_) return std::nullopt;
+  if (!localization_has_transform_) {
+    return core::Status{core::StatusCode::kNoTransform, "no transform from localization's child_frame_id '" +
+                                                            localization_->child_frame_id + "' to '" +
+                                                            config_->base_frame + "'"};
+  }
+  const std::string map_frame = frame_name(localization_->header.frame_id);
+  if (lines_ && lines_->frame_id != map_frame) {
+    return core::Status{core::StatusCode::kFrameMismatch, "navigation is in frame '" + lines_->frame_id +
+                                                              "', but localization in '" + map_frame + "'"};
+  }
+  return std::nullopt;
+}
+
+bool MapEngine::already_mapped(const ros::Time& now) const {
+  const std::optional<core::Time> pose = pipeline_.pose_stamp();
+  if (!pose || !mapped_pose_ || *pose != *mapped_pose_) return false;
+  return core::to_seconds(to_core(now) - *pose) <= config_->max_age.localization;
+}
+
+MapMsgPtr MapEngine::tick(const ros::Time& now) {
+  if (now < last_tick_) reset();
+  last_tick_ = now;
+  if (already_mapped(now)) return nullptr;
+  mapped_pose_ = pipeline_.pose_stamp();
+
+  const std::optional<core::Status> fault = frame_fault();
+  map_ =
+      fault ? pipeline_.empty_map(*fault, mapped_pose_.value_or(to_core(now))) : pipeline_.tick(to_core(now));
+  if (map_.status.code == core::StatusCode::kOk) {
+    for (const std::string& remark : pipeline_.remarks()) {
+      map_.status.message += (map_.status.message.empty() ? "" : "; ") + remark;
+    }
+    if (!marker_fault_.empty()) map_.status.message = marker_fault_;
+  }
+  const MapMsgPtr message = to_message(map_);
+  if (markers_) message->lane_marker = *markers_;
+  if (localization_) message->localization = *localization_;
+  return message;
+}
+
+void MapEngine::reset() {
+  pipeline_.reset();
+  localization_.reset();
+  markers_.reset();
+  localization_has_transform_ = true;
+  marker_fault_.clear();
+  mapped_pose_.reset();
+}
+
+}  // namespace relative_map

@@ -1,0 +1,205 @@
+#include "relative_map/ros/relative_map_node.hpp"
+
+#include <XmlRpcValue.h>
+
+#include "relative_map/pipeline/lane_path.hpp"
+
+namespace relative_map {
+
+namespace {
+
+constexpr double kLogPeriod = 5.0;  // [s] between repetitions of one complaint
+
+NodeConfig load_config(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
+  XmlRpc::XmlRpcValue tree;
+  private_nh.getParam(private_nh.getNamespace(), tree);
+  std::string urdf;
+  nh.getParam("robot_description", urdf);
+  return make_node_config(flatten(tree), urdf);
+}
+
+/// The parameters that may change while driving, out of and into the pipeline's configuration.
+template <class Copy>
+void exchange(Copy copy, RelativeMapConfig& request, core::PipelineConfig& config) {
+  copy(request.default_left_width, config.map_param.default_left_width);
+  copy(request.default_right_width, config.map_param.default_right_width);
+  copy(request.default_speed_limit, config.map_param.default_speed_limit);
+  copy(request.min_lane_half_width, config.navigation_lane.min_lane_half_width);
+  copy(request.max_lane_half_width, config.navigation_lane.max_lane_half_width);
+  copy(request.lane_marker_weight, config.navigation_lane.lane_marker_weight);
+  copy(request.min_lane_marker_quality, config.navigation_lane.min_lane_marker_quality);
+  copy(request.max_len_from_navigation_line, config.navigation_lane.max_len_from_navigation_line);
+  copy(request.max_distance_to_navigation_line, config.navigation_lane.max_distance_to_navigation_line);
+}
+
+RelativeMapConfig reconfigure_view(core::PipelineConfig config) {
+  RelativeMapConfig view = RelativeMapConfig::__getDefault__();
+  exchange([](double& to, double& from) { to = from; }, view, config);
+  return view;
+}
+
+core::PipelineConfig with_request(core::PipelineConfig config, RelativeMapConfig request) {
+  exchange([](double& from, double& to) { to = from; }, request, config);
+  return config;
+}
+
+/// How far the vehicle is to the left of the current lane's centerline.
+double lateral_offset(const core::RelativeMap& map) {
+  for (const core::Lane& lane : map.lanes) {
+    if (lane.id != map.current_lane_id) continue;
+    core::LanePath path;
+    path.points = lane.path;
+    core::locate_vehicle(path);
+    return path.l;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
+    : nh_(nh),
+      private_nh_(private_nh),
+      config_(load_config(nh, private_nh)),
+      transform_listener_(transforms_),
+      engine_(config_, link_transforms(transforms_)),
+      intake_config_(config_.pipeline),
+      diagnostics_(nh, private_nh, private_nh.getNamespace()),
+      intake_spinner_(1, &intake_queue_) {
+  map_publisher_ = nh_.advertise<MapMsg>("relative_map", 1);
+  markers_publisher_ = private_nh_.advertise<visualization_msgs::MarkerArray>("markers", 1);
+  centerline_publisher_ = private_nh_.advertise<nav_msgs::Path>("centerline", 1);
+
+  const auto no_delay = ros::TransportHints().tcpNoDelay();
+  localization_subscriber_ = nh_.subscribe<LocalizationEstimate>(
+      "localization", 100,
+      [this](const LocalizationEstimateConstPtr& message) {
+        engine_.on_localization(message, ros::Time::now());
+      },
+      ros::VoidConstPtr(), no_delay);
+  chassis_subscriber_ = nh_.subscribe<Chassis>(
+      "chassis", 10,
+      [this](const ChassisConstPtr& message) { engine_.on_chassis(message, ros::Time::now()); },
+      ros::VoidConstPtr(), no_delay);
+  lane_markers_subscriber_ = nh_.subscribe<LaneMarkers>(
+      "perception/lane_markers", 10,
+      [this](const LaneMarkersConstPtr& message) { engine_.on_lane_markers(message, ros::Time::now()); },
+      ros::VoidConstPtr(), no_delay);
+  reset_service_ = private_nh_.advertiseService("reset", &RelativeMapNode::on_reset, this);
+
+  ros::SubscribeOptions intake = ros::SubscribeOptions::create<NavigationInfo>(
+      "navigation", 1, [this](const NavigationInfoConstPtr& message) { on_navigation(message); },
+      ros::VoidConstPtr(), &intake_queue_);
+  navigation_subscriber_ = nh_.subscribe(intake);
+
+  reconfigure_ = std::make_unique<dynamic_reconfigure::Server<RelativeMapConfig>>(
+      ros::NodeHandle(private_nh_, kReconfigureNamespace));
+  reconfigure_->updateConfig(reconfigure_view(config_.pipeline));
+  reconfigure_->setCallback(
+      [this](RelativeMapConfig& request, uint32_t level) { on_reconfigure(request, level); });
+
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("relative map", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    summarize(statistics_, status);
+  });
+  diagnostics_timer_ = nh_.createWallTimer(
+      ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
+  timer_ = nh_.createTimer(ros::Duration(1.0 / config_.rate), &RelativeMapNode::on_timer, this);
+  intake_spinner_.start();
+}
+
+RelativeMapNode::~RelativeMapNode() {
+  intake_spinner_.stop();
+}
+
+void RelativeMapNode::on_navigation(const NavigationInfoConstPtr& message) {
+  core::PipelineConfig config;
+  {
+    const std::lock_guard<std::mutex> lock(intake_mutex_);
+    config = intake_config_;
+  }
+  auto lines = MapEngine::prepare(*message, config);
+  for (const std::string& fault : lines->faults) ROS_WARN_STREAM("navigation: " << fault);
+  for (const core::NavigationLine& line : lines->lines) {
+    ROS_INFO_STREAM("navigation: line '" << line.id << "', priority " << line.priority << ", "
+                                         << line.points.size() << " points, " << line.length << " m"
+                                         << (line.closed() ? ", closed" : ""));
+  }
+  const std::lock_guard<std::mutex> lock(intake_mutex_);
+  new_lines_ = std::move(lines);
+}
+
+void RelativeMapNode::pick_up_lines() {
+  std::shared_ptr<const core::NavigationLines> lines;
+  {
+    const std::lock_guard<std::mutex> lock(intake_mutex_);
+    lines.swap(new_lines_);
+  }
+  if (lines) engine_.set_navigation_lines(std::move(lines));
+}
+
+void RelativeMapNode::on_timer(const ros::TimerEvent&) {
+  const ros::WallTime start = ros::WallTime::now();
+  pick_up_lines();
+  const MapMsgPtr map = engine_.tick(ros::Time::now());
+  if (!map) return;
+  map_publisher_.publish(map);
+  statistics_.tick_time = (ros::WallTime::now() - start).toSec();
+  log_status(*map);
+  publish_views(*map);
+}
+
+void RelativeMapNode::publish_views(const MapMsg& map) {
+  if (markers_publisher_.getNumSubscribers() > 0) {
+    markers_publisher_.publish(markers_.draw(map, config_.pipeline.footprint));
+  }
+  if (centerline_publisher_.getNumSubscribers() > 0) centerline_publisher_.publish(centerline(map));
+}
+
+void RelativeMapNode::log_status(const MapMsg& map) {
+  const core::RelativeMap& built = engine_.last_map();
+  const std::string name = status_name(built.status.code);
+  ++statistics_.maps;
+  if (map.status.code != MapStatus::OK) ++statistics_.empty_maps[name];
+  statistics_.lanes = built.lanes.size();
+  statistics_.lateral_offset = lateral_offset(built);
+  for (const core::Lane& lane : built.lanes) {
+    if (lane.id == built.current_lane_id) statistics_.remaining_distance = lane.remaining_distance;
+  }
+  statistics_.last_map.status = built.status;
+  statistics_.last_map.fusion = built.fusion;
+  statistics_.last_map.current_lane_id = built.current_lane_id;
+
+  const bool changed = map.status.code != logged_code_;
+  logged_code_ = map.status.code;
+  if (map.status.code == MapStatus::OK) {
+    if (changed) ROS_INFO_STREAM("the map is back: " << built.lanes.size() << " lanes");
+    if (!map.status.message.empty()) ROS_WARN_STREAM_THROTTLE(kLogPeriod, map.status.message);
+  } else if (changed) {
+    ROS_WARN_STREAM("no map: " << name << ": " << map.status.message);
+  } else {
+    ROS_WARN_STREAM_THROTTLE(kLogPeriod, "still no map: " << name << ": " << map.status.message);
+  }
+}
+
+void RelativeMapNode::on_reconfigure(RelativeMapConfig& request, uint32_t) {
+  const core::PipelineConfig candidate = with_request(engine_.config(), request);
+  const std::vector<std::string> faults = candidate.validate();
+  if (!faults.empty()) {
+    for (const std::string& fault : faults) ROS_ERROR_STREAM("reconfigure is refused: " << fault);
+    request = reconfigure_view(engine_.config());
+    return;
+  }
+  engine_.set_config(candidate);
+  const std::lock_guard<std::mutex> lock(intake_mutex_);
+  intake_config_ = candidate;
+}
+
+bool RelativeMapNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  engine_.reset();
+  response.success = true;
+  response.message = "inputs are forgotten, lines are kept";
+  return true;
+}
+
+}  // namespace relative_map
