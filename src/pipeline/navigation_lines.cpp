@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -36,7 +37,42 @@ std::string clean_positions(const RecordedLine& recorded, NavigationLine& line,
   return kept.size() < 2 ? "it has fewer than two distinct points" : "";
 }
 
-/// Drops what runs past the start, so that the stitch goes forward.
+Polyline positions(const PathPoints& points, std::size_t begin, std::size_t end) {
+  Polyline result;
+  for (std::size_t i = begin; i < end; ++i) result.push_back(points[i].position);
+  return result;
+}
+
+/// Whether all points from `begin` on lie on the line before them.
+bool repeats_itself(const PathPoints& points, std::size_t begin, double half_width) {
+  const Polyline lap = positions(points, 0, begin);
+  PolylineWalker walker(lap);
+  const Polyline rest = positions(points, begin, points.size());
+  return std::all_of(rest.begin(), rest.end(), [&](const Point2& point) {
+    return walker.next(point).squared_distance <= half_width * half_width;
+  });
+}
+
+/// How many points a line has up to where it reaches its start again, to repeat itself from there on.
+/// All of them if it does not, or if it goes elsewhere from there.
+std::size_t points_of_lap(const PathPoints& points, double half_width) {
+  const PathPoint& first = points.front();
+  bool next_is_past_start = false;
+  for (std::size_t end = points.size(); points[end - 1].s > kMinLapLength; --end) {
+    const PathPoint& point = points[end - 1];
+    const Point2 offset = point.position - first.position;
+    const bool beside_start = std::abs(cross(first.direction, offset)) <= half_width &&
+                              std::abs(angle_difference(point.theta, first.theta)) <= kMaxStitchTurn;
+    const bool past_start = first.direction.dot(offset) >= 0.0;
+    if (next_is_past_start && beside_start && !past_start) {
+      return repeats_itself(points, end, half_width) ? end : points.size();
+    }
+    next_is_past_start = beside_start && past_start;
+  }
+  return points.size();
+}
+
+/// Drops what comes too near to the start, so that the stitch goes forward.
 void trim_overlap(PathPoints& points, double spacing) {
   const PathPoint first = points.front();
   while (points.size() > 3 &&
@@ -66,7 +102,8 @@ bool stitch(NavigationLine& line, double half_width) {
   PathPoints& points = line.points;
   if (points.size() < 4 || line.length < kMinLapLength) return false;
   const double spacing = line.length / static_cast<double>(points.size() - 1);
-  const PathPoint &first = points.front(), &last = points.back();
+  const std::size_t end = points_of_lap(points, half_width);
+  const PathPoint &first = points.front(), &last = points[end - 1];
   const double turn = angle_difference(last.theta, first.theta);
   const Point2 along = (first.direction + last.direction).normalized();
   const Point2 gap = first.position - last.position;
@@ -75,8 +112,9 @@ bool stitch(NavigationLine& line, double half_width) {
                          gap.dot(along) >= -half_width;
   if (!ends_meet || std::abs(turn) > kMaxStitchTurn) return false;
 
+  points.resize(end);
   trim_overlap(points, spacing);
-  blend_seam(points, line.length);
+  blend_seam(points, points.back().s);
   compute_arc_length(points);
   line.ends = Ends::kClosed;
   line.length = points.back().s + (points.front().position - points.back().position).norm();
@@ -168,8 +206,12 @@ std::vector<std::string> make_ids(const std::vector<RecordedLine>& lines) {
   for (const RecordedLine& line : lines) ++uses[line.name];
   std::vector<std::string> ids;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool unique = !lines[i].name.empty() && uses[lines[i].name] == 1;
-    ids.push_back(unique ? lines[i].name : "line_" + std::to_string(i) + "_" + lines[i].name);
+    std::string id = lines[i].name;
+    if (id.empty() || uses[id] > 1) {
+      id = "line_" + std::to_string(i) + "_" + id;
+      while (uses.count(id) > 0) id += "_";  // another line bears that very name
+    }
+    ids.push_back(id);
   }
   return ids;
 }
@@ -177,7 +219,11 @@ std::vector<std::string> make_ids(const std::vector<RecordedLine>& lines) {
 /// Two lines of one priority would leave open which one yields: the later one moves back.
 void make_priorities_unique(NavigationLines& result) {
   std::vector<NavigationLine*> order;
-  for (NavigationLine& line : result.lines) order.push_back(&line);
+  const auto room = static_cast<std::uint32_t>(result.lines.size());
+  for (NavigationLine& line : result.lines) {
+    line.priority = std::min(line.priority, std::numeric_limits<std::uint32_t>::max() - room);
+    order.push_back(&line);
+  }
   std::stable_sort(order.begin(), order.end(), [](const NavigationLine* a, const NavigationLine* b) {
     return a->priority < b->priority;
   });
