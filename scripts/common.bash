@@ -31,7 +31,7 @@ else
   test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-rosbag python3-rostest
     librostest-dev clang-format catkin-lint)
 fi
-picture_packages=(xvfb xauth imagemagick libgl1-mesa-dri)
+picture_packages=(xvfb imagemagick libgl1-mesa-dri)
 
 say() { printf '== %s\n' "$*"; }
 
@@ -123,12 +123,12 @@ free_port() {
 }
 
 # start_run: marks all processes started from here on, so that stop_run finds them (roslaunch gives each node a session
-# of its own, so that a process group is not enough).
-start_run() { export RELATIVE_MAP_RUN=$$.$RANDOM$RANDOM; }
+# of its own, so that a process group is not enough). A run can be part of another one.
+start_run() { export RELATIVE_MAP_RUN=${RELATIVE_MAP_RUN:-}/$$.$RANDOM; }
 
 run_pids() {
   local files
-  files=$(env -u RELATIVE_MAP_RUN grep -lsz "^RELATIVE_MAP_RUN=$RELATIVE_MAP_RUN\$" /proc/[0-9]*/environ) || true
+  files=$(env -u RELATIVE_MAP_RUN grep -lszE "^RELATIVE_MAP_RUN=$RELATIVE_MAP_RUN(/|\$)" /proc/[0-9]*/environ) || true
   files=${files//\/proc\//}
   printf '%s' "${files//\/environ/}"
 }
