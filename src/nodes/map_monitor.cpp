@@ -7,9 +7,9 @@
 #include <string>
 
 #include "relative_map/pipeline/lane_path.hpp"
-#include "relative_map/pipeline/map_check.hpp"
 #include "relative_map/ros/conversions.hpp"
 #include "relative_map/ros/diagnostics.hpp"
+#include "relative_map/ros/message_check.hpp"
 
 namespace relative_map {
 
@@ -35,7 +35,7 @@ class MapMonitor {
     fresh_ = true;
     ++maps_;
     if (last_.lanes.empty()) ++empty_;
-    for (const core::Violation& violation : core::check_map(last_, context_)) {
+    for (const core::Violation& violation : check_message(message, context_)) {
       ++violations_;
       if (++violations_by_row_[violation.row] <= 3) {
         std::printf("CONTRACT VIOLATION, %s: %s\n", violation.row.c_str(), violation.what.c_str());
