@@ -1,5 +1,7 @@
 #include "relative_map/ros/map_engine.hpp"
 
+#include "relative_map/pipeline/map_check.hpp"
+
 namespace relative_map {
 
 namespace {
@@ -95,8 +97,10 @@ MapMsgPtr MapEngine::tick(const ros::Time& now) {
   mapped_pose_ = pipeline_.pose_stamp();
 
   const std::optional<core::Status> fault = frame_fault();
-  map_ =
+  core::RelativeMap built =
       fault ? pipeline_.empty_map(*fault, mapped_pose_.value_or(to_core(now))) : pipeline_.tick(to_core(now));
+  map_ = core::checked(std::move(built), {config_->base_frame, published_sequence_num_});
+  published_sequence_num_ = map_.sequence_num;
   if (map_.status.code == core::StatusCode::kOk) {
     for (const std::string& remark : pipeline_.remarks()) {
       map_.status.message += (map_.status.message.empty() ? "" : "; ") + remark;

@@ -28,4 +28,7 @@ std::vector<std::string> map_check_rows();
 /// Rows that compare geometry are checked only where every number is finite and every path is a path.
 std::vector<Violation> check_map(const RelativeMap& map, const MapContext& context);
 
+/// The map, if it keeps the contract; else an empty one in its place, whose status names rows and numbers.
+RelativeMap checked(RelativeMap map, const MapContext& context);
+
 }  // namespace relative_map::core

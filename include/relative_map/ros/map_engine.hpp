@@ -58,6 +58,7 @@ class MapEngine {
   std::string marker_fault_;
   ros::Time last_tick_;
   std::optional<core::Time> mapped_pose_;
+  std::optional<std::uint32_t> published_sequence_num_;
   core::RelativeMap map_;
 };
 
