@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace relative_map::core {
@@ -9,6 +10,7 @@ namespace relative_map::core {
 namespace {
 
 constexpr Time kKept = std::chrono::seconds(3);                     // of poses
+constexpr Time kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
 constexpr Time kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
 
 bool usable(const Eigen::Quaterniond& q) {
@@ -80,16 +82,26 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
   state.stamp = base.stamp;
   state.map_from_base = Pose2(base.position.head<2>(), heading);
   const double along = base.linear_velocity.head<2>().dot(state.map_from_base.forward());
-  state.speed = chassis ? chassis->speed : (std::isfinite(along) ? along : 0.0);
-  const double yaw_rate = base.angular_velocity_body.z();
-  state.yaw_rate = std::isfinite(yaw_rate) ? yaw_rate : 0.0;
+  if (std::isfinite(along)) state.speed = along;
+  if (chassis && std::isfinite(chassis->speed)) state.speed = chassis->speed;
+  state.yaw_rate = base.angular_velocity_body.z();
   return state;
 }
 
 void PoseBuffer::add(const VehicleState& state) {
   while (!states_.empty() && states_.back().stamp >= state.stamp) states_.pop_back();
   states_.push_back(state);
+  if (!std::isfinite(state.yaw_rate)) states_.back().yaw_rate = turn_rate_up_to(state);
   while (states_.front().stamp < state.stamp - kKept) states_.pop_front();
+}
+
+double PoseBuffer::turn_rate_up_to(const VehicleState& state) const {
+  const auto earlier = std::find_if(states_.begin(), states_.end(), [&](const VehicleState& candidate) {
+    return candidate.stamp >= state.stamp - kTurnInterval && candidate.stamp < state.stamp;
+  });
+  if (earlier == states_.end()) return 0.0;
+  return angle_difference(state.map_from_base.heading(), earlier->map_from_base.heading()) /
+         to_seconds(state.stamp - earlier->stamp);
 }
 
 std::optional<Pose2> PoseBuffer::at(Time stamp) const {

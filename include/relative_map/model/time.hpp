@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 
 namespace relative_map::core {
 
@@ -11,7 +12,7 @@ inline double to_seconds(Time duration) {
   return std::chrono::duration<double>(duration).count();
 }
 inline Time from_seconds(double seconds) {
-  return std::chrono::duration_cast<Time>(std::chrono::duration<double>(seconds));
+  return Time(std::llround(seconds * 1e9));
 }
 
 }  // namespace relative_map::core

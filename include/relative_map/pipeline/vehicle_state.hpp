@@ -16,7 +16,7 @@ struct VehicleState {
   Time stamp{};
   Pose2 map_from_base;
   double speed = 0.0;     ///< [m/s] negative when reversing
-  double yaw_rate = 0.0;  ///< [rad/s]
+  double yaw_rate = 0.0;  ///< [rad/s] NaN: not given
 };
 
 /// The pose of base_link, given that of another link of the same rigid body; the velocity gets its lever
@@ -24,7 +24,7 @@ struct VehicleState {
 Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& link_from_base);
 
 /// The plane view of a pose of base_link, or INVALID_LOCALIZATION with the field and the value.
-/// Speed is the chassis', else the velocity along the heading.
+/// Speed is the chassis', else the velocity along the heading, else 0.
 std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
                                                       const std::optional<Chassis>& chassis);
 
@@ -32,12 +32,15 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
 class PoseBuffer {
  public:
   /// A stamp at or before the newest one's replaces what came after it: time has been set back.
+  /// A yaw rate that is not given comes from the headings of the poses before.
   void add(const VehicleState& state);
   /// Interpolated between poses, carried on by speed and yaw rate a little beyond them; none further out.
   std::optional<Pose2> at(Time stamp) const;
   void clear() { states_.clear(); }
 
  private:
+  double turn_rate_up_to(const VehicleState& state) const;
+
   std::deque<VehicleState> states_;  ///< by rising stamp
 };
 
