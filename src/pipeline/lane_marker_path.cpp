@@ -13,6 +13,11 @@ constexpr double kStart = -2.0;       // [m] x of the first sample
 constexpr double kFadeLength = 30.0;  // [m] past view_range until the path runs straight
 constexpr double kWidthMargin = 1.5;  // a lane so much wider or narrower than the limits is no lane
 
+// Paint beyond these is not the vehicle's own lane's.
+constexpr double kFarthest = 10.0;     // [m] beside the vehicle
+constexpr double kSteepest = 5.0;      // [-] slope
+constexpr double kMaxCurvature = 0.2;  // [1/m]
+
 /// The curve that the path follows, and how far it may be believed.
 struct Guide {
   Cubic cubic;
@@ -21,13 +26,22 @@ struct Guide {
   double left_half_width = 0.0, right_half_width = 0.0;
 };
 
+/// Whether a vehicle could follow the cubic from the first sample to `x_end`; not if a number is NaN.
+bool drivable(const Cubic& cubic, double x_end) {
+  if (!(std::abs(cubic.c0) <= kFarthest)) return false;
+  for (double x = kStart; x <= x_end; x += kStep) {
+    if (!(std::abs(cubic.slope(x)) <= kSteepest) || !(std::abs(cubic.kappa(x)) <= kMaxCurvature))
+      return false;
+  }
+  return true;
+}
+
 bool usable(const LaneMarker& marker, const NavigationLaneParam& param) {
-  const Cubic& c = marker.cubic;
-  return marker.quality >= param.min_lane_marker_quality && marker.quality > 0.0 && std::isfinite(c.c0) &&
-         std::isfinite(c.c1) && std::isfinite(c.c2) && std::isfinite(c.c3) &&
+  return marker.quality >= param.min_lane_marker_quality && marker.quality > 0.0 &&
          std::isfinite(marker.longitude_start) && std::isfinite(marker.view_range) &&
          marker.view_range >= param.min_view_range_to_use_lane_marker &&
-         marker.view_range > marker.longitude_start;
+         marker.view_range > marker.longitude_start &&
+         drivable(marker.cubic, std::min(marker.view_range, param.max_len_for_navigation_lane));
 }
 
 Cubic mean_of(const LaneMarker& left, const LaneMarker& right) {
@@ -132,15 +146,18 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
   const double length = std::clamp(std::abs(speed) * param.ratio_navigation_lane_len_to_speed,
                                    param.min_len_for_navigation_lane, param.max_len_for_navigation_lane);
   const double seen = std::min(guide.to, length);
+  // A camera ahead of the base, or a vehicle that has rolled back since: the path starts behind it all the
+  // same.
+  const double start = kStart - std::ceil(std::max(0.0, base_from_sensor.position().x()) / kStep) * kStep;
   MarkerPath result;
   LanePath& path = result.path;
   std::size_t first_trusted = 0;
-  for (double x = kStart; x <= std::max(seen, kStart + kStep); x += kStep) {
+  for (double x = start; x <= std::max(seen, start + kStep); x += kStep) {
     if (x < guide.from) ++first_trusted;
     path.points.push_back(sample(guide, x));
   }
   const std::size_t last_trusted = path.points.size() - 1;
-  extend(path.points, length - (kStart + kStep * static_cast<double>(last_trusted)));
+  extend(path.points, length - (start + kStep * static_cast<double>(last_trusted)));
   compute_arc_length(path.points);
   compute_dkappa(path.points);
   result.trusted_from = path.points[std::min(first_trusted, last_trusted)].s;

@@ -19,8 +19,9 @@ struct MarkerPath {
 
 /// The path between the markers, or why there is none.
 /// Its cubic is the mean of both (c0 plain, c1 to c3 by quality); one marker alone is followed at the default
-/// half width. It is sampled at x = -2, -1, 0 ... in the markers' frame up to a length proportional to
-/// `speed` [m/s]; past view_range the curvature fades to zero.
+/// half width. It is sampled at x = -2, -1, 0 ... in the markers' frame (from farther back, where that does
+/// not reach back to the vehicle) up to a length proportional to `speed` [m/s]; past view_range the curvature
+/// fades to zero. Paint that no vehicle could follow does not count.
 /// `base_from_sensor`: the markers' frame, where it was at their stamp, as seen from base_link now.
 std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& markers,
                                                        const Pose2& base_from_sensor, double speed,
