@@ -2,15 +2,29 @@
 
 #include <algorithm>
 #include <boost/geometry.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/index/rtree.hpp>
 #include <limits>
+#include <utility>
 
 namespace relative_map::core {
 
 namespace bg = boost::geometry;
 
 namespace {
+
+using BoostPoint = bg::model::d2::point_xy<double>;
+using Box = bg::model::box<BoostPoint>;
+using Run = std::pair<Box, std::size_t>;  ///< the box around a run of segments, and its first segment
+
 constexpr std::size_t kRunLength = 16;
-}
+
+}  // namespace
+
+struct SegmentIndex::Tree {
+  bg::index::rtree<Run, bg::index::rstar<16>> runs;
+};
 
 SegmentIndex::SegmentIndex(const PathPoints& points, Ends ends)
     : segments_(ends == Ends::kClosed ? points.size() : points.size() - 1) {
@@ -26,7 +40,8 @@ SegmentIndex::SegmentIndex(const PathPoints& points, Ends ends)
     }
     runs.emplace_back(Box({low.x(), low.y()}, {high.x(), high.y()}), first);
   }
-  runs_ = {runs.begin(), runs.end()};  // packed: faster to build and to query than one by one
+  // Packed: faster to build and to query than one by one.
+  tree_ = std::make_shared<const Tree>(Tree{{runs.begin(), runs.end()}});
 }
 
 Foot SegmentIndex::project(const PathPoints& points, std::size_t segment, const Point2& point) const {
@@ -42,7 +57,7 @@ std::vector<Foot> SegmentIndex::passes(const PathPoints& points, const Point2& p
   const Box around({point.x() - max_distance, point.y() - max_distance},
                    {point.x() + max_distance, point.y() + max_distance});
   std::vector<std::size_t> firsts;
-  for (auto run = runs_.qbegin(bg::index::intersects(around)); run != runs_.qend(); ++run) {
+  for (auto run = tree_->runs.qbegin(bg::index::intersects(around)); run != tree_->runs.qend(); ++run) {
     firsts.push_back(run->second);
   }
   std::sort(firsts.begin(), firsts.end());
@@ -78,8 +93,8 @@ Foot SegmentIndex::nearest(const PathPoints& points, const Point2& point) const 
   best.squared_distance = std::numeric_limits<double>::infinity();
   const BoostPoint query(point.x(), point.y());
   // Runs come by rising distance of their boxes: once a box is farther than the best foot, so is the rest.
-  for (auto run = runs_.qbegin(bg::index::nearest(query, static_cast<unsigned>(runs_.size())));
-       run != runs_.qend(); ++run) {
+  for (auto run = tree_->runs.qbegin(bg::index::nearest(query, static_cast<unsigned>(tree_->runs.size())));
+       run != tree_->runs.qend(); ++run) {
     if (bg::comparable_distance(query, run->first) > best.squared_distance) break;
     for (std::size_t i = run->second; i < std::min(run->second + kRunLength, segments_); ++i) {
       const Foot foot = project(points, i, point);

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/index/rtree.hpp>
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include "relative_map/geometry/path_point.hpp"
@@ -26,13 +23,11 @@ class SegmentIndex {
   Foot nearest(const PathPoints& points, const Point2& point) const;
 
  private:
-  using BoostPoint = boost::geometry::model::d2::point_xy<double>;
-  using Box = boost::geometry::model::box<BoostPoint>;
-  using Run = std::pair<Box, std::size_t>;  ///< the box around a run of segments, and its first segment
+  struct Tree;  ///< hidden: Boost.Geometry is slow to compile
 
   Foot project(const PathPoints& points, std::size_t segment, const Point2& point) const;
 
-  boost::geometry::index::rtree<Run, boost::geometry::index::rstar<16>> runs_;
+  std::shared_ptr<const Tree> tree_;
   std::size_t segments_ = 0;
 };
 
