@@ -26,13 +26,13 @@ std_msgs::ColorRGBA color(double r, double g, double b, double a) {
 
 // Okabe and Ito's palette, which colour-blind people can tell apart.
 std_msgs::ColorRGBA kBlue() {
-  return color(0.0, 0.45, 0.70, 0.65);
+  return color(0.05, 0.60, 1.0, 0.85);
 }
 std_msgs::ColorRGBA kTeal() {
-  return color(0.0, 0.62, 0.45, 0.40);
+  return color(0.0, 0.85, 0.62, 0.60);
 }
 std_msgs::ColorRGBA kGrey() {
-  return color(0.55, 0.55, 0.60, 0.40);
+  return color(0.80, 0.80, 0.88, 0.45);
 }
 std_msgs::ColorRGBA kOrange() {
   return color(0.90, 0.60, 0.0, 1.0);
@@ -199,8 +199,8 @@ Marker draw_footprint(const MapMsg& map, const core::Footprint& footprint) {
 Marker draw_status(const MapMsg& map) {
   Marker marker = make_marker(map, "status", 0, Marker::TEXT_VIEW_FACING);
   marker.pose.position.x = 1.5;
-  marker.pose.position.z = 3.0;
-  marker.scale.z = 0.8;
+  marker.pose.position.z = 4.5;
+  marker.scale.z = 0.7;
   if (map.status.code != MapStatus::OK) {
     marker.color = color(0.95, 0.1, 0.1, 1.0);
     marker.text = "NO MAP: " + map.status.message;

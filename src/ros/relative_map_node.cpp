@@ -93,7 +93,7 @@ RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   navigation_subscriber_ = nh_.subscribe(intake);
 
   reconfigure_ = std::make_unique<dynamic_reconfigure::Server<RelativeMapConfig>>(
-      ros::NodeHandle(private_nh_, kReconfigureNamespace));
+      reconfigure_mutex_, ros::NodeHandle(private_nh_, kReconfigureNamespace));
   reconfigure_->updateConfig(reconfigure_view(config_.pipeline));
   reconfigure_->setCallback(
       [this](RelativeMapConfig& request, uint32_t level) { on_reconfigure(request, level); });

@@ -8,6 +8,7 @@
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <boost/thread/recursive_mutex.hpp>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -56,6 +57,7 @@ class RelativeMapNode {
   MapStatistics statistics_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostics_timer_;
+  boost::recursive_mutex reconfigure_mutex_;  ///< the server wants one that outlives it
   std::unique_ptr<dynamic_reconfigure::Server<RelativeMapConfig>> reconfigure_;
 
   ros::CallbackQueue intake_queue_;
