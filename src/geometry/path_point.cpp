@@ -98,6 +98,18 @@ PathPoint interpolate(const PathPoints& points, double s, std::size_t& hint) {
   return point;
 }
 
+PathPoint interpolate_smoothly(const PathPoints& points, double s, std::size_t& hint) {
+  PathPoint point = interpolate(points, s, hint);
+  if (hint + 1 == points.size()) return point;
+  const PathPoint& a = points[hint];
+  const PathPoint& b = points[hint + 1];
+  const double length = b.s - a.s, t = (point.s - a.s) / length, u = 1.0 - t;
+  // Hermite's cubic, as what it adds to the chord.
+  const Point2 chord = (b.position - a.position) / length;
+  point.position += length * t * u * (u * (a.direction - chord) - t * (b.direction - chord));
+  return point;
+}
+
 Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point) {
   const Point2 segment = b - a;
   const double squared_length = segment.squaredNorm();

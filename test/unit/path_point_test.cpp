@@ -167,6 +167,19 @@ TEST(Interpolation, AtAVertexIsTheVertex) {
   }
 }
 
+TEST(SmoothInterpolation, StaysOnTheCurveBetweenItsVertices) {
+  const PathPoints path = path_through(arc(Pose2(), 0.05, 40.0, 1.0));
+  std::size_t hint = 0;
+  for (double s = 0.0; s < path.back().s; s += 0.13) {
+    const PathPoint point = interpolate_smoothly(path, s, hint);
+    EXPECT_NEAR((point.position - Point2(0.0, 20.0)).norm(), 20.0, 1e-6) << "where the chord is 6 mm inside";
+    EXPECT_EQ(point.s, s);
+  }
+  EXPECT_EQ(interpolate_smoothly(path, -1.0, hint).position, path.front().position);
+  EXPECT_EQ(interpolate_smoothly(path, path.back().s, hint).position, path.back().position);
+  EXPECT_EQ(interpolate_smoothly(path, path[7].s, hint).position, path[7].position);
+}
+
 TEST(Projection, OnASegmentIsHeldAtItsEnds) {
   const Point2 a(1.0, 1.0), b(5.0, 1.0);
   const Foot beside = project_on_segment(a, b, Point2(2.0, 4.0));

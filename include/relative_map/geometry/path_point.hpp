@@ -35,6 +35,9 @@ void compute_geometry(PathPoints& points, Ends ends = Ends::kOpen, double lap_le
 /// the search from, and comes back as the vertex at or before s: walking along a path costs O(1) a step.
 PathPoint interpolate(const PathPoints& points, double s, std::size_t& hint);
 
+/// The same on the cubics through the vertices with their directions: for coarse samples of a smooth curve.
+PathPoint interpolate_smoothly(const PathPoints& points, double s, std::size_t& hint);
+
 /// Where a point projects on a polyline.
 struct Foot {
   std::size_t segment = 0;  ///< between vertices `segment` and `segment + 1`
