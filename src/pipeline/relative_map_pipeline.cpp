@@ -11,6 +11,8 @@ namespace relative_map::core {
 
 namespace {
 
+constexpr Time kLate =
+    std::chrono::milliseconds(500);  // an older message than the newest, but of the same time
 constexpr double kHysteresis = 0.3;  // [m] by which another lane must be nearer to become the current one
 
 std::string seconds_text(Time duration) {
@@ -33,10 +35,24 @@ void RelativeMapPipeline::set_navigation_lines(std::shared_ptr<const NavigationL
   trackers_.assign(lines_->lines.size(), NavigationLineTracker());
 }
 
-void RelativeMapPipeline::set_localization(const Localization& base) {
-  localization_ = base;
-  const auto state = make_vehicle_state(base, chassis_);
+void RelativeMapPipeline::set_localization(const Localization& link,
+                                           const std::optional<Eigen::Isometry3d>& link_from_base) {
+  if (localization_ && link.stamp < localization_->input.stamp) {
+    if (localization_->input.stamp - link.stamp < kLate) return;
+    reset();
+  }
+  localization_ = check_localization(link);
+  if (localization_->refusal) return;
+  if (link_from_base) localization_->input = carry_to_base(localization_->input, *link_from_base);
+  const auto state = make_vehicle_state(localization_->input, fresh_chassis(link.stamp));
   if (const auto* vehicle = std::get_if<VehicleState>(&state)) poses_.add(*vehicle);
+}
+
+std::optional<Chassis> RelativeMapPipeline::fresh_chassis(Time now) const {
+  if (!chassis_) return std::nullopt;
+  const double age = to_seconds(now - chassis_->input.stamp);
+  if (std::abs(age) > config_->max_age.chassis) return std::nullopt;
+  return chassis_->input;
 }
 
 void RelativeMapPipeline::reset() {
@@ -50,7 +66,7 @@ void RelativeMapPipeline::reset() {
 
 std::optional<Time> RelativeMapPipeline::pose_stamp() const {
   if (!localization_) return std::nullopt;
-  return localization_->stamp;
+  return localization_->input.stamp;
 }
 
 RelativeMap RelativeMapPipeline::tick(Time now) {
@@ -60,7 +76,7 @@ RelativeMap RelativeMapPipeline::tick(Time now) {
     // Without a pose that holds, the statement is about now.
     const bool has_pose =
         status->code != StatusCode::kNoLocalization && status->code != StatusCode::kStaleLocalization;
-    return empty_map(std::move(*status), has_pose ? localization_->stamp : now);
+    return empty_map(std::move(*status), has_pose ? localization_->input.stamp : now);
   }
   RelativeMap& map = std::get<RelativeMap>(built);
   map.sequence_num = ++sequence_num_;
@@ -107,14 +123,24 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
   return finish({{markers->path}, 0}, markers, std::move(fusion), vehicle);
 }
 
-std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) const {
+std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) {
   if (!localization_) return Status{StatusCode::kNoLocalization, "no localization received yet"};
-  const Time age = now - localization_->stamp;
+  const Time age = now - localization_->input.stamp;
   if (to_seconds(age) > config_->max_age.localization) {
     return Status{StatusCode::kStaleLocalization, "the newest localization is " + seconds_text(age) + " old"};
   }
-  const bool chassis_is_old = chassis_ && to_seconds(now - chassis_->stamp) > config_->max_age.chassis;
-  return make_vehicle_state(*localization_, chassis_is_old ? std::nullopt : chassis_);
+  if (to_seconds(-age) > config_->max_age.localization) {
+    return Status{StatusCode::kInvalidLocalization,
+                  "localization: header.stamp is " + seconds_text(-age) + " in the future"};
+  }
+  if (localization_->refusal) return *localization_->refusal;
+  add_remarks(localization_->remarks);
+  if (chassis_) add_remarks(chassis_->remarks);
+  return make_vehicle_state(localization_->input, fresh_chassis(now));
+}
+
+void RelativeMapPipeline::add_remarks(const std::vector<std::string>& remarks) {
+  remarks_.insert(remarks_.end(), remarks.begin(), remarks.end());
 }
 
 std::optional<MarkerPath> RelativeMapPipeline::marker_path(const VehicleState& vehicle, Time now) {
@@ -168,9 +194,7 @@ std::variant<RelativeMapPipeline::Lanes, Status> RelativeMapPipeline::lanes_of_l
   // The vehicle lies left of a line by l, so the leftmost line has the smallest l.
   std::stable_sort(lanes.paths.begin(), lanes.paths.end(),
                    [](const LanePath& a, const LanePath& b) { return a.l < b.l; });
-  for (std::string& remark : drop_narrow_lanes(lanes.paths, config_->footprint.half_width)) {
-    remarks_.push_back(std::move(remark));
-  }
+  add_remarks(drop_narrow_lanes(lanes.paths, config_->footprint.half_width));
   lanes.current = choose_current(lanes.paths);
   return lanes;
 }

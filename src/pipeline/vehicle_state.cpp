@@ -17,6 +17,11 @@ bool usable(const Eigen::Quaterniond& q) {
   return q.coeffs().allFinite() && q.norm() > 1e-6;
 }
 
+/// No projection of the Earth reaches farther.
+bool is_coordinate(double value) {
+  return std::isfinite(value) && std::abs(value) < 1e8;
+}
+
 double yaw_of(const Eigen::Quaterniond& q) {
   const Eigen::Vector3d forward = q.normalized() * Eigen::Vector3d::UnitX();
   return std::atan2(forward.y(), forward.x());
@@ -71,13 +76,13 @@ Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& li
 
 std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
                                                       const std::optional<Chassis>& chassis) {
-  if (!std::isfinite(base.position.x())) return invalid("pose.position.x", base.position.x());
-  if (!std::isfinite(base.position.y())) return invalid("pose.position.y", base.position.y());
   const double heading = heading_of(base);
   if (!std::isfinite(heading)) {
     return Status{StatusCode::kInvalidLocalization,
                   "localization: neither pose.heading nor pose.orientation gives a direction"};
   }
+  if (!is_coordinate(base.position.x())) return invalid("pose.position.x", base.position.x());
+  if (!is_coordinate(base.position.y())) return invalid("pose.position.y", base.position.y());
   VehicleState state;
   state.stamp = base.stamp;
   state.map_from_base = Pose2(base.position.head<2>(), heading);

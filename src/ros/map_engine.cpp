@@ -47,9 +47,9 @@ void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, con
   const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_->base_frame);
   localization_has_transform_ = link_from_base.has_value();
   if (!link_from_base) return;
-  const core::Localization localization = to_core(*message, convention_, received);
   const bool is_base = link == config_->base_frame;
-  pipeline_.set_localization(is_base ? localization : core::carry_to_base(localization, *link_from_base));
+  pipeline_.set_localization(to_core(*message, convention_, received),
+                             is_base ? std::nullopt : link_from_base);
 }
 
 void MapEngine::on_chassis(const ChassisConstPtr& message, const ros::Time& received) {

@@ -9,6 +9,7 @@
 
 #include "relative_map/model/config.hpp"
 #include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/input_check.hpp"
 #include "relative_map/pipeline/lane_marker_path.hpp"
 #include "relative_map/pipeline/map_builder.hpp"
 #include "relative_map/pipeline/navigation_line_tracker.hpp"
@@ -25,9 +26,11 @@ class RelativeMapPipeline {
 
   void set_config(std::shared_ptr<const PipelineConfig> config) { config_ = std::move(config); }
   void set_navigation_lines(std::shared_ptr<const NavigationLines> lines);
-  /// Poses are those of the body frame (carry_to_base).
-  void set_localization(const Localization& base);
-  void set_chassis(const Chassis& chassis) { chassis_ = chassis; }
+  /// Of the link whose place in the vehicle `link_from_base` gives; none: of the body frame itself.
+  /// A message a little older than the newest one is late and dropped; one much older sets time back.
+  void set_localization(const Localization& link,
+                        const std::optional<Eigen::Isometry3d>& link_from_base = std::nullopt);
+  void set_chassis(const Chassis& chassis) { chassis_ = check_chassis(chassis); }
   void set_lane_markers(const LaneMarkers& markers) { markers_ = markers; }
   /// Forgets all but configuration and lines, as after a jump of the clock.
   void reset();
@@ -39,14 +42,16 @@ class RelativeMapPipeline {
   /// An empty map that says why.
   RelativeMap empty_map(Status status, Time stamp);
 
-  /// What the last tick noticed about lines and markers without giving up on the map, a sentence each.
+  /// What the last tick noticed about its inputs without giving up on the map, a sentence each.
   const std::vector<std::string>& remarks() const { return remarks_; }
 
  private:
   struct Lanes;
 
   std::variant<RelativeMap, Status> build(Time now);
-  std::variant<VehicleState, Status> vehicle_state(Time now) const;
+  std::variant<VehicleState, Status> vehicle_state(Time now);
+  std::optional<Chassis> fresh_chassis(Time now) const;
+  void add_remarks(const std::vector<std::string>& remarks);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
   std::variant<Lanes, Status> lanes_of_lines(const VehicleState& vehicle);
   std::size_t choose_current(const std::vector<LanePath>& lanes) const;
@@ -55,9 +60,9 @@ class RelativeMapPipeline {
 
   std::shared_ptr<const PipelineConfig> config_;
   std::shared_ptr<const NavigationLines> lines_;
-  std::vector<NavigationLineTracker> trackers_;  ///< one a line
-  std::optional<Localization> localization_;
-  std::optional<Chassis> chassis_;
+  std::vector<NavigationLineTracker> trackers_;        ///< one a line
+  std::optional<Checked<Localization>> localization_;  ///< of the body frame
+  std::optional<Checked<Chassis>> chassis_;
   std::optional<LaneMarkers> markers_;
   PoseBuffer poses_;
   std::string current_id_;  ///< of the last map

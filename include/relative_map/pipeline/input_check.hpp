@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relative_map/model/inputs.hpp"
+#include "relative_map/model/map.hpp"
+
+namespace relative_map::core {
+
+/// An input after its numbers were looked at: what can be repaired is, and each repair leaves a sentence that
+/// names the field and the value. `refusal`: it can't be used at all.
+template <class Input>
+struct Checked {
+  Input input;
+  std::vector<std::string> remarks;
+  std::optional<Status> refusal;
+};
+
+/// Of any link, as received. A direction that is given twice must be beyond doubt: heading and orientation that disagree are
+/// refused, unless one of them was plainly never filled, or they differ by the 90 degrees of the other
+/// orientation convention, where the heading holds.
+Checked<Localization> check_localization(const Localization& link);
+
+/// A speed that no car drives is not given (NaN).
+Checked<Chassis> check_chassis(const Chassis& chassis);
+
+}  // namespace relative_map::core

@@ -1,0 +1,107 @@
+#include "relative_map/pipeline/input_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "support/lines.hpp"
+
+namespace relative_map::core {
+namespace {
+
+using test::kNaN;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Localization facing(double heading, double yaw) {
+  Localization localization;
+  localization.heading = heading;
+  localization.map_from_body = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
+  return localization;
+}
+
+TEST(LocalizationCheck, LeavesAGoodOneAlone) {
+  const auto checked = check_localization(facing(1.0, 1.05));
+  EXPECT_FALSE(checked.refusal);
+  EXPECT_THAT(checked.remarks, IsEmpty());
+  EXPECT_EQ(checked.input.heading, 1.0);
+}
+
+TEST(LocalizationCheck, ComparesDirectionsTheShortWayRound) {
+  EXPECT_THAT(check_localization(facing(kPi - 0.01, -kPi + 0.01)).remarks, IsEmpty());
+}
+
+TEST(LocalizationCheck, TakesAnInfiniteHeadingAsNotGiven) {
+  const auto checked = check_localization(facing(std::numeric_limits<double>::infinity(), 1.0));
+  EXPECT_TRUE(std::isnan(checked.input.heading));
+  EXPECT_FALSE(checked.refusal);
+}
+
+TEST(LocalizationCheck, TakesAZeroOrientationAsNotGiven) {
+  Localization localization = facing(1.0, 0.0);
+  localization.map_from_body.coeffs().setZero();
+  EXPECT_THAT(check_localization(localization).remarks, IsEmpty());
+}
+
+TEST(LocalizationCheck, NormalisesAndSaysSo) {
+  Localization localization = facing(1.0, 1.0);
+  localization.map_from_body.coeffs() *= 3.0;
+  const auto checked = check_localization(localization);
+  EXPECT_NEAR(checked.input.map_from_body.norm(), 1.0, 1e-12);
+  EXPECT_THAT(checked.remarks, ElementsAre(HasSubstr("pose.orientation has norm 3")));
+}
+
+TEST(LocalizationCheck, NamesTheOtherConventionAtNinetyDegrees) {
+  const auto checked = check_localization(facing(1.0, 1.0 - kPi / 2.0));
+  EXPECT_FALSE(checked.refusal);
+  EXPECT_EQ(checked.input.heading, 1.0);
+  EXPECT_THAT(checked.remarks, ElementsAre(testing::AllOf(HasSubstr("90 degrees"),
+                                                          HasSubstr("orientation_convention is wrong"))));
+}
+
+TEST(LocalizationCheck, TakesTheOrientationOverAHeadingThatWasNeverFilled) {
+  const auto checked = check_localization(facing(0.0, 2.5));
+  EXPECT_TRUE(std::isnan(checked.input.heading));
+  EXPECT_THAT(checked.remarks, ElementsAre(HasSubstr("pose.heading is 0")));
+}
+
+TEST(LocalizationCheck, TakesTheHeadingOverAnOrientationThatWasNeverFilled) {
+  const auto checked = check_localization(facing(2.5, 0.0));
+  EXPECT_EQ(checked.input.heading, 2.5);
+  EXPECT_THAT(checked.remarks, ElementsAre(HasSubstr("pose.orientation is the identity")));
+}
+
+TEST(LocalizationCheck, RefusesTwoDirectionsThatContradictEachOther) {
+  const auto checked = check_localization(facing(0.5, 1.2));
+  ASSERT_TRUE(checked.refusal);
+  EXPECT_EQ(checked.refusal->code, StatusCode::kInvalidLocalization);
+  EXPECT_THAT(checked.refusal->message, HasSubstr("disagree by -40.1"));
+}
+
+TEST(LocalizationCheck, IgnoresMotionThatNoCarMakes) {
+  Localization localization = facing(1.0, 1.0);
+  localization.linear_velocity = {1000.0, 0.0, 0.0};
+  localization.angular_velocity_body = {0.0, 0.0, 40.0};
+  const auto checked = check_localization(localization);
+  EXPECT_TRUE(std::isnan(checked.input.linear_velocity.x()));
+  EXPECT_TRUE(std::isnan(checked.input.angular_velocity_body.z()));
+  EXPECT_THAT(checked.remarks, ElementsAre(HasSubstr("pose.linear_velocity is 1000 m/s"),
+                                           HasSubstr("pose.angular_velocity_vrf.z is 40 rad/s")));
+}
+
+TEST(ChassisCheck, IgnoresASpeedThatNoCarDrives) {
+  Chassis chassis;
+  chassis.speed = 1000.0;
+  const auto checked = check_chassis(chassis);
+  EXPECT_TRUE(std::isnan(checked.input.speed));
+  EXPECT_THAT(checked.remarks, ElementsAre("chassis: speed_mps is 1000: ignored"));
+}
+
+TEST(ChassisCheck, LeavesReverseAlone) {
+  Chassis chassis;
+  chassis.speed = -3.0;
+  EXPECT_EQ(check_chassis(chassis).input.speed, -3.0);
+  EXPECT_THAT(check_chassis(chassis).remarks, IsEmpty());
+}
+
+}  // namespace
+}  // namespace relative_map::core
