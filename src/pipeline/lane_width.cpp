@@ -43,14 +43,25 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
 std::optional<double> first_narrow_place(const LanePath& lane, const LanePath& better, double spacing) {
   const Polyline centerline = positions_of(better.points);
   PolylineWalker walker(centerline);
-  double searched = -kSearchStep;
-  for (const PathPoint& vertex : lane.points) {
-    if (vertex.s < searched + kSearchStep) continue;
-    searched = vertex.s;
-    const Foot foot = walker.next(vertex.position);
-    if (!walker.beyond_end(foot) && foot.squared_distance < spacing * spacing) return vertex.s;
+  double s = 0.0;
+  for (std::size_t i = 0; i + 1 < lane.points.size(); ++i) {
+    const PathPoint &a = lane.points[i], &b = lane.points[i + 1];
+    for (; s < b.s; s += kSearchStep) {
+      const Foot foot = walker.next(a.position + (s - a.s) / (b.s - a.s) * (b.position - a.position));
+      if (!walker.beyond_end(foot) && foot.squared_distance < spacing * spacing) return s;
+    }
   }
   return std::nullopt;
+}
+
+/// Ends a lane before `s` [m]; false leaves it as it is: what remained of it ahead would be too short.
+bool cut_short(LanePath& lane, double s) {
+  const auto end = std::find_if(lane.points.begin(), lane.points.end(),
+                                [s](const PathPoint& point) { return point.s >= s; });
+  if (end - lane.points.begin() < 2 || (end - 1)->s - lane.s_at_vehicle < kShortestLane) return false;
+  lane.points.erase(end, lane.points.end());
+  lane.remaining = lane.points.back().s - lane.s_at_vehicle;
+  return true;
 }
 
 std::string narrow_sentence(const LanePath& lane, const LanePath& better, const char* verb, double ahead) {
@@ -70,10 +81,8 @@ bool drop_one(std::vector<LanePath>& lanes, double half_width, std::vector<std::
     const std::optional<double> narrow = first_narrow_place(lane, better, 2.0 * half_width);
     if (!narrow) continue;
     const double ahead = *narrow - lane.s_at_vehicle;
-    if (ahead > kShortestLane) {
+    if (cut_short(lane, *narrow)) {
       sentences.push_back(narrow_sentence(lane, better, "is cut short", ahead));
-      while (lane.points.back().s >= *narrow) lane.points.pop_back();
-      lane.remaining = lane.points.back().s - lane.s_at_vehicle;
       continue;
     }
     sentences.push_back(narrow_sentence(lane, better, "is left out", ahead));
@@ -96,33 +105,45 @@ double half_width_past_neighbor(double own, double at_neighbor, double distance)
   return at_neighbor + (own - at_neighbor) * t * t * (3.0 - 2.0 * t);
 }
 
-/// At its own half width, but never past the middle between it and the lane beside it.
-Polyline own_border(const LanePath& lane, const std::vector<Beside>& beside, double half_width, Side side) {
-  Polyline border;
-  border.reserve(lane.points.size());
-  for (std::size_t i = 0; i < lane.points.size(); ++i) {
-    const bool bounded = !beside.empty() && beside[i].exists;
-    const double width = bounded ? std::min(half_width, 0.5 * beside[i].spacing) : half_width;
-    border.push_back(border_point(lane.points[i], width, side));
-  }
-  return border;
-}
-
 /// The stretch of a lane's vertices that have the other lane beside them: [first, last].
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
 
-std::optional<Stretch> stretch_beside(const std::vector<Beside>& beside, double max_spacing) {
+std::optional<Stretch> stretch_beside(const std::vector<Beside>& beside) {
   std::optional<Stretch> stretch;
   for (std::size_t i = 0; i < beside.size(); ++i) {
     if (!beside[i].exists) continue;
-    if (beside[i].spacing > max_spacing) return std::nullopt;
     if (!stretch) stretch = Stretch{i, i};
     stretch->last = i;
   }
-  if (stretch && stretch->first == stretch->last) return std::nullopt;
   return stretch;
+}
+
+/// Whether the lanes are neighbours: beside each other on more than one vertex, and nowhere too far apart.
+bool share_border(const std::vector<Beside>& beside, const std::optional<Stretch>& stretch,
+                  double max_spacing) {
+  return stretch && stretch->first < stretch->last &&
+         std::all_of(beside.begin(), beside.end(), [max_spacing](const Beside& other) {
+           return !other.exists || other.spacing <= max_spacing;
+         });
+}
+
+/// At its own half width, but never past the middle between it and the lane beside it.
+Polyline own_border(const LanePath& lane, const std::vector<Beside>& beside, double half_width, Side side) {
+  const std::optional<Stretch> stretch = stretch_beside(beside);
+  Polyline border;
+  border.reserve(lane.points.size());
+  for (std::size_t i = 0; i < lane.points.size(); ++i) {
+    double width = half_width;
+    if (stretch) {
+      const std::size_t nearest = std::clamp(i, stretch->first, stretch->last);
+      width = half_width_past_neighbor(half_width, std::min(half_width, 0.5 * beside[nearest].spacing),
+                                       std::abs(lane.points[i].s - lane.points[nearest].s));
+    }
+    border.push_back(border_point(lane.points[i], width, side));
+  }
+  return border;
 }
 
 struct SharedBorder {
@@ -185,7 +206,8 @@ LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_wid
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const LanePath &left = lanes[i], &right = lanes[i + 1];
     const std::vector<Beside> beside = look_beside(left, right);
-    if (const std::optional<Stretch> stretch = stretch_beside(beside, 2.0 * max_half_width)) {
+    const std::optional<Stretch> stretch = stretch_beside(beside);
+    if (share_border(beside, stretch, 2.0 * max_half_width)) {
       SharedBorder shared = shared_border(left, right, beside, *stretch);
       borders.right[i] = std::move(shared.of_left_lane);
       borders.left[i + 1] = std::move(shared.of_right_lane);

@@ -114,6 +114,11 @@ std::variant<LineProjection, LineDrop> NavigationLineTracker::track(const Naviga
                                                                     const VehicleState& vehicle,
                                                                     double max_distance) {
   const Point2 position = vehicle.map_from_base.position() - line.origin;
+  // Cheap, for messages with thousands of lines.
+  if (const double away = line.bounds.exteriorDistance(position); away > max_distance) {
+    reset();
+    return off_route("it is away by more than", away, "m");
+  }
   std::vector<Pass> passes;
   std::optional<double> opposed;
   for (const Foot& foot : line.index.passes(line.points, position, max_distance)) {

@@ -197,6 +197,7 @@ std::string prepare(const RecordedLine& recorded, const IntakeParam& param, Navi
   if (!stitched) keep_recorded_geometry(recorded, kept, line);
   line.thinned = spacing_varies(line.points);
   line.index = SegmentIndex(line.points, line.ends);
+  for (const PathPoint& point : line.points) line.bounds.extend(point.position);
   return "";
 }
 

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "relative_map/pipeline/lane_fusion.hpp"
-#include "relative_map/pipeline/navigation_line_window.hpp"
 
 namespace relative_map::core {
 
@@ -23,17 +22,6 @@ std::string seconds_text(Time duration) {
 }
 
 }  // namespace
-
-/// Lanes left to right, and the one that the vehicle is on.
-struct RelativeMapPipeline::Lanes {
-  std::vector<LanePath> paths;
-  std::size_t current = 0;
-};
-
-void RelativeMapPipeline::set_navigation_lines(std::shared_ptr<const NavigationLines> lines) {
-  lines_ = std::move(lines);
-  trackers_.assign(lines_->lines.size(), NavigationLineTracker());
-}
 
 void RelativeMapPipeline::set_localization(const Localization& link,
                                            const std::optional<Eigen::Isometry3d>& link_from_base) {
@@ -61,7 +49,7 @@ void RelativeMapPipeline::reset() {
   markers_.reset();
   poses_.clear();
   current_id_.clear();
-  for (NavigationLineTracker& tracker : trackers_) tracker.reset();
+  lanes_in_reach_.reset();
 }
 
 std::optional<Time> RelativeMapPipeline::pose_stamp() const {
@@ -101,15 +89,16 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
   Status no_lines{StatusCode::kMarkersUnusable,
                   "lane_source is PERCEPTION, and the lane markers are unusable"};
   if (config_->navigation_lane.lane_source == LaneSource::kOfflineGenerated) {
-    auto found = lanes_of_lines(vehicle);
-    if (auto* lanes = std::get_if<Lanes>(&found)) {
+    auto found = lanes_in_reach_.find(vehicle, *config_, remarks_);
+    if (auto* lanes = std::get_if<std::vector<LanePath>>(&found)) {
+      const std::size_t current = choose_current(*lanes);
       FusionState fusion;
       fusion.source = Source::kNavigationLine;
       if (markers) {
         fusion = fuse_fixed_weight(*markers, config_->navigation_lane.lane_marker_weight,
-                                   config_->lane_fusion.fade_length, lanes->paths[lanes->current]);
+                                   config_->lane_fusion.fade_length, (*lanes)[current]);
       }
-      return finish(std::move(*lanes), markers, std::move(fusion), vehicle);
+      return finish(std::move(*lanes), current, markers, std::move(fusion), vehicle);
     }
     no_lines = std::get<Status>(found);
   }
@@ -120,7 +109,7 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
   FusionState fusion;
   fusion.source = Source::kLaneMarkers;
   fusion.marker_range = std::max(0.0, markers->trusted_to - markers->path.s_at_vehicle);
-  return finish({{markers->path}, 0}, markers, std::move(fusion), vehicle);
+  return finish({markers->path}, 0, markers, std::move(fusion), vehicle);
 }
 
 std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) {
@@ -162,43 +151,6 @@ std::optional<MarkerPath> RelativeMapPipeline::marker_path(const VehicleState& v
   return std::get<MarkerPath>(std::move(made));
 }
 
-std::variant<RelativeMapPipeline::Lanes, Status> RelativeMapPipeline::lanes_of_lines(
-    const VehicleState& vehicle) {
-  if (!lines_ || lines_->lines.empty()) {
-    Status status{StatusCode::kNoNavigationLine,
-                  lines_ ? "no usable navigation line" : "no navigation line received yet"};
-    if (lines_)
-      for (const std::string& fault : lines_->faults) status.message += "; " + fault;
-    return status;
-  }
-  Lanes lanes;
-  Status dropped{StatusCode::kOffRoute, "no navigation line is in reach"};
-  for (std::size_t i = 0; i < lines_->lines.size(); ++i) {
-    const NavigationLine& line = lines_->lines[i];
-    const auto tracked =
-        trackers_[i].track(line, vehicle, config_->navigation_lane.max_distance_to_navigation_line);
-    if (const auto* drop = std::get_if<LineDrop>(&tracked)) {
-      const std::string remark = "line '" + line.id + "': " + drop->reason;
-      remarks_.push_back(remark);
-      if (drop->code == StatusCode::kLineEnd)
-        dropped = {StatusCode::kLineEnd, "the end of the line is reached"};
-      continue;
-    }
-    LanePath path = cut_window(line, std::get<LineProjection>(tracked), vehicle.map_from_base,
-                               config_->navigation_lane.max_len_from_navigation_line);
-    path.left_half_width = config_->map_param.default_left_width;
-    path.right_half_width = config_->map_param.default_right_width;
-    lanes.paths.push_back(std::move(path));
-  }
-  if (lanes.paths.empty()) return dropped;
-  // The vehicle lies left of a line by l, so the leftmost line has the smallest l.
-  std::stable_sort(lanes.paths.begin(), lanes.paths.end(),
-                   [](const LanePath& a, const LanePath& b) { return a.l < b.l; });
-  add_remarks(drop_narrow_lanes(lanes.paths, config_->footprint.half_width));
-  lanes.current = choose_current(lanes.paths);
-  return lanes;
-}
-
 std::size_t RelativeMapPipeline::choose_current(const std::vector<LanePath>& lanes) const {
   std::size_t current = 0;
   const auto distance = [&](std::size_t i) {
@@ -210,26 +162,27 @@ std::size_t RelativeMapPipeline::choose_current(const std::vector<LanePath>& lan
   return current;
 }
 
-RelativeMap RelativeMapPipeline::finish(Lanes lanes, const std::optional<MarkerPath>& markers,
-                                        FusionState fusion, const VehicleState& vehicle) {
+RelativeMap RelativeMapPipeline::finish(std::vector<LanePath> lanes, std::size_t current,
+                                        const std::optional<MarkerPath>& markers, FusionState fusion,
+                                        const VehicleState& vehicle) {
   SeenPaint paint;
   if (markers) {
     paint = {markers->left_paint.value_or(BoundaryType::kUnknown),
              markers->right_paint.value_or(BoundaryType::kUnknown), markers->trusted_to};
     fusion.marker_age = std::max(0.0, to_seconds(vehicle.stamp - markers_->stamp));
   }
-  const double s_at_vehicle = lanes.paths[lanes.current].s_at_vehicle;
-  LaneBorders borders = find_borders(lanes.paths, config_->navigation_lane.max_lane_half_width);
-  RelativeMap map = build_map(std::move(lanes.paths), std::move(borders), lanes.current, paint, *config_);
+  const double s_at_vehicle = lanes[current].s_at_vehicle;
+  LaneBorders borders = find_borders(lanes, config_->navigation_lane.max_lane_half_width);
+  RelativeMap map = build_map(std::move(lanes), std::move(borders), current, paint, *config_);
   map.stamp = vehicle.stamp;
-  const Lane& current = map.lanes[lanes.current];
+  const Lane& lane = map.lanes[current];
   const auto beside_vehicle = [&](const std::vector<WidthSample>& samples) {
     const auto after = std::find_if(samples.begin(), samples.end(),
                                     [&](const WidthSample& sample) { return sample.s >= s_at_vehicle; });
     return after == samples.end() ? samples.back().width : after->width;
   };
-  fusion.left_half_width.value = beside_vehicle(current.left_samples);
-  fusion.right_half_width.value = beside_vehicle(current.right_samples);
+  fusion.left_half_width.value = beside_vehicle(lane.left_samples);
+  fusion.right_half_width.value = beside_vehicle(lane.right_samples);
   map.fusion = std::move(fusion);
   current_id_ = map.current_lane_id;
   return map;

@@ -18,9 +18,9 @@ struct Checked {
   std::optional<Status> refusal;
 };
 
-/// Of any link, as received. A direction that is given twice must be beyond doubt: heading and orientation that disagree are
-/// refused, unless one of them was plainly never filled, or they differ by the 90 degrees of the other
-/// orientation convention, where the heading holds.
+/// Of any link, as received. A direction that is given twice must be beyond doubt: heading and orientation
+/// that disagree are refused, unless one of them was plainly never filled, or they differ by the 90 degrees
+/// of the other orientation convention, where the heading holds.
 Checked<Localization> check_localization(const Localization& link);
 
 /// A speed that no car drives is not given (NaN).

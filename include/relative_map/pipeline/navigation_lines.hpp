@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct NavigationLine {
   Point2 origin = Point2::Zero();  ///< map coordinates of the line's own origin
   PathPoints points;               ///< relative to `origin`; two or more, distinct, finite
   SegmentIndex index;
+  Eigen::AlignedBox2d bounds;  ///< around all points
   Ends ends = Ends::kOpen;
   double length = 0.0;   ///< [m] a closed line's stitch included
   bool thinned = false;  ///< spacing varies, as resampling by curvature leaves it

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,9 +10,8 @@
 #include "relative_map/model/map.hpp"
 #include "relative_map/pipeline/input_check.hpp"
 #include "relative_map/pipeline/lane_marker_path.hpp"
+#include "relative_map/pipeline/lanes_in_reach.hpp"
 #include "relative_map/pipeline/map_builder.hpp"
-#include "relative_map/pipeline/navigation_line_tracker.hpp"
-#include "relative_map/pipeline/navigation_lines.hpp"
 #include "relative_map/pipeline/vehicle_state.hpp"
 
 namespace relative_map::core {
@@ -25,7 +23,9 @@ class RelativeMapPipeline {
   explicit RelativeMapPipeline(std::shared_ptr<const PipelineConfig> config) : config_(std::move(config)) {}
 
   void set_config(std::shared_ptr<const PipelineConfig> config) { config_ = std::move(config); }
-  void set_navigation_lines(std::shared_ptr<const NavigationLines> lines);
+  void set_navigation_lines(std::shared_ptr<const NavigationLines> lines) {
+    lanes_in_reach_.set_lines(std::move(lines));
+  }
   /// Of the link whose place in the vehicle `link_from_base` gives; none: of the body frame itself.
   /// A message a little older than the newest one is late and dropped; one much older sets time back.
   void set_localization(const Localization& link,
@@ -46,21 +46,18 @@ class RelativeMapPipeline {
   const std::vector<std::string>& remarks() const { return remarks_; }
 
  private:
-  struct Lanes;
-
   std::variant<RelativeMap, Status> build(Time now);
   std::variant<VehicleState, Status> vehicle_state(Time now);
   std::optional<Chassis> fresh_chassis(Time now) const;
   void add_remarks(const std::vector<std::string>& remarks);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
-  std::variant<Lanes, Status> lanes_of_lines(const VehicleState& vehicle);
   std::size_t choose_current(const std::vector<LanePath>& lanes) const;
-  RelativeMap finish(Lanes lanes, const std::optional<MarkerPath>& markers, FusionState fusion,
+  RelativeMap finish(std::vector<LanePath> lanes, std::size_t current,
+                     const std::optional<MarkerPath>& markers, FusionState fusion,
                      const VehicleState& vehicle);
 
   std::shared_ptr<const PipelineConfig> config_;
-  std::shared_ptr<const NavigationLines> lines_;
-  std::vector<NavigationLineTracker> trackers_;        ///< one a line
+  LanesInReach lanes_in_reach_;
   std::optional<Checked<Localization>> localization_;  ///< of the body frame
   std::optional<Checked<Chassis>> chassis_;
   std::optional<LaneMarkers> markers_;
