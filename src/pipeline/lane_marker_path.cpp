@@ -36,12 +36,24 @@ bool drivable(const Cubic& cubic, double x_end) {
   return true;
 }
 
-bool usable(const LaneMarker& marker, const NavigationLaneParam& param) {
-  return marker.quality >= param.min_lane_marker_quality && marker.quality > 0.0 &&
-         std::isfinite(marker.longitude_start) && std::isfinite(marker.view_range) &&
-         marker.view_range >= param.min_view_range_to_use_lane_marker &&
-         marker.view_range > marker.longitude_start &&
-         drivable(marker.cubic, std::min(marker.view_range, param.max_len_for_navigation_lane));
+/// Why a marker does not count; none: it does.
+std::optional<std::string> fault_of(const LaneMarker& marker, const NavigationLaneParam& param) {
+  std::ostringstream fault;
+  if (!(marker.quality >= param.min_lane_marker_quality) || !(marker.quality > 0.0)) {
+    fault << "quality is " << marker.quality;
+  } else if (!std::isfinite(marker.view_range) ||
+             marker.view_range < param.min_view_range_to_use_lane_marker) {
+    fault << "view_range is " << marker.view_range << " m";
+  } else if (!(marker.longitude_start < marker.view_range) || !std::isfinite(marker.longitude_start)) {
+    fault << "longitude_start is " << marker.longitude_start << " m, and view_range " << marker.view_range
+          << " m";
+  } else if (!drivable(marker.cubic, std::min(marker.view_range, param.max_len_for_navigation_lane))) {
+    const Cubic& c = marker.cubic;
+    fault << "no vehicle could follow c0..c3 = " << c.c0 << ", " << c.c1 << ", " << c.c2 << ", " << c.c3;
+  } else {
+    return std::nullopt;
+  }
+  return fault.str();
 }
 
 Cubic mean_of(const LaneMarker& left, const LaneMarker& right) {
@@ -82,11 +94,12 @@ Guide beside(const LaneMarker& marker, double offset, const MapParam& map_param)
 
 std::variant<Guide, std::string> guide_of(const LaneMarkers& markers, const MapParam& map_param,
                                           const NavigationLaneParam& param) {
-  const bool left = usable(markers.left, param), right = usable(markers.right, param);
-  if (left && right) return between(markers.left, markers.right, param);
-  if (left) return beside(markers.left, -map_param.default_left_width, map_param);
-  if (right) return beside(markers.right, map_param.default_right_width, map_param);
-  return std::string("neither the left nor the right one is good enough");
+  const std::optional<std::string> left = fault_of(markers.left, param),
+                                   right = fault_of(markers.right, param);
+  if (!left && !right) return between(markers.left, markers.right, param);
+  if (!left) return beside(markers.left, -map_param.default_left_width, map_param);
+  if (!right) return beside(markers.right, map_param.default_right_width, map_param);
+  return "left: " + *left + "; right: " + *right;
 }
 
 /// The path beside the cubic at x: a parallel curve, kappa' = kappa / (1 - offset kappa).
@@ -169,8 +182,8 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
   path.right_half_width = guide.right_half_width;
   locate_vehicle(path);
   path.remaining = path.points.back().s - path.s_at_vehicle;
-  if (usable(markers.left, param)) result.left_paint = markers.left.type;
-  if (usable(markers.right, param)) result.right_paint = markers.right.type;
+  if (!fault_of(markers.left, param)) result.left_paint = markers.left.type;
+  if (!fault_of(markers.right, param)) result.right_paint = markers.right.type;
   return result;
 }
 

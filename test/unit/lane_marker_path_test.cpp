@@ -126,11 +126,11 @@ TEST(MarkerPath, TakesNoCountOfAMarkerOfPoorQuality) {
   EXPECT_NEAR(path.path.points[0].position.y(), 0.0, 1e-12) << "1.75 m left of the right one";
   EXPECT_FALSE(path.left_paint);
   markers.right.quality = 0.49;
-  EXPECT_THAT(refusal_of(markers), HasSubstr("neither the left nor the right"));
+  EXPECT_THAT(refusal_of(markers), HasSubstr("left: quality is 0.49; right: quality is 0.49"));
 }
 
 TEST(MarkerPath, TakesNoCountOfAMarkerThatIsNotSeen) {
-  EXPECT_THAT(refusal_of(LaneMarkers()), HasSubstr("neither")) << "all zeros is no marker";
+  EXPECT_THAT(refusal_of(LaneMarkers()), HasSubstr("left: quality is 0;")) << "all zeros is no marker";
   NavigationLaneParam any_quality;
   any_quality.min_lane_marker_quality = 0.0;
   const auto made = make_marker_path(LaneMarkers(), Pose2(), kSpeed, MapParam(), any_quality);
@@ -139,11 +139,13 @@ TEST(MarkerPath, TakesNoCountOfAMarkerThatIsNotSeen) {
 
 TEST(MarkerPath, TakesNoCountOfAMarkerThatIsSeenTooShort) {
   LaneMarkers markers = lane_about({0.0}, 1.75, 0.4);
-  EXPECT_THAT(refusal_of(markers), HasSubstr("neither"));
+  EXPECT_THAT(refusal_of(markers), HasSubstr("left: view_range is 0.4 m"));
   markers.left.view_range = markers.right.view_range = 0.6;
   EXPECT_EQ(refusal_of(markers), "accepted");
   markers.left.longitude_start = markers.right.longitude_start = 0.7;
-  EXPECT_THAT(refusal_of(markers), HasSubstr("neither")) << "it starts past its end";
+  EXPECT_THAT(refusal_of(markers), HasSubstr("longitude_start is 0.7 m")) << "past its end";
+  markers.left.view_range = -5.0;
+  EXPECT_THAT(refusal_of(markers), HasSubstr("left: view_range is -5 m"));
 }
 
 TEST(MarkerPath, TakesNoCountOfNumbersThatAreNotFinite) {
@@ -154,19 +156,24 @@ TEST(MarkerPath, TakesNoCountOfNumbersThatAreNotFinite) {
     return refusal_of(markers);
   };
   EXPECT_EQ(with([](LaneMarker&) {}), "accepted");
-  EXPECT_THAT(with([](LaneMarker& left) { left.quality = kNaN; }), HasSubstr("neither"));
-  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c0 = kNaN; }), HasSubstr("neither"));
-  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c1 = kNaN; }), HasSubstr("neither"));
-  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c2 = kNaN; }), HasSubstr("neither"));
-  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c3 = kNaN; }), HasSubstr("neither"));
-  EXPECT_THAT(with([](LaneMarker& left) { left.view_range = kNaN; }), HasSubstr("neither"));
-  EXPECT_THAT(with([](LaneMarker& left) { left.longitude_start = kNaN; }), HasSubstr("neither"));
+  EXPECT_THAT(with([](LaneMarker& left) { left.quality = kNaN; }), HasSubstr("left: quality is nan"));
+  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c0 = kNaN; }),
+              HasSubstr("left: no vehicle could follow c0..c3 = nan"));
+  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c1 = kNaN; }),
+              HasSubstr("left: no vehicle could follow c0..c3 = 1.75, nan"));
+  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c2 = kNaN; }),
+              HasSubstr("left: no vehicle could follow c0..c3 = 1.75, 0, nan"));
+  EXPECT_THAT(with([](LaneMarker& left) { left.cubic.c3 = kNaN; }),
+              HasSubstr("left: no vehicle could follow c0..c3 = 1.75, 0, 0, nan"));
+  EXPECT_THAT(with([](LaneMarker& left) { left.view_range = kNaN; }), HasSubstr("left: view_range is nan"));
+  EXPECT_THAT(with([](LaneMarker& left) { left.longitude_start = kNaN; }),
+              HasSubstr("left: longitude_start is nan"));
 }
 
 TEST(MarkerPath, TakesNoCountOfPaintThatNoVehicleCanFollow) {
   LaneMarkers markers;
   markers.left = marker({1.75, 0.0, -0.3, 0.0});  // a radius of 1.7 m
-  EXPECT_THAT(refusal_of(markers), HasSubstr("neither"));
+  EXPECT_THAT(refusal_of(markers), HasSubstr("left: no vehicle could follow c0..c3 = 1.75, 0, -0.3, 0"));
 }
 
 TEST(MarkerPath, IsRefusedWhereBothMarkersMakeNoLane) {
