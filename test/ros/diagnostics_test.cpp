@@ -1,0 +1,122 @@
+#include "relative_map/ros/diagnostics.hpp"
+
+#include <gmock/gmock.h>
+#include <relative_map/FusionState.h>
+#include <relative_map/MapStatus.h>
+
+#include <set>
+
+namespace relative_map {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using testing::HasSubstr;
+
+diagnostic_updater::DiagnosticStatusWrapper summary_of(const MapStatistics& statistics) {
+  diagnostic_updater::DiagnosticStatusWrapper status;
+  summarize(statistics, status);
+  return status;
+}
+
+MapStatistics statistics_of(core::StatusCode code, const std::string& message = "") {
+  MapStatistics statistics;
+  statistics.maps = 1;
+  statistics.last_map.status = {code, message};
+  return statistics;
+}
+
+std::string value_of(const DiagnosticStatus& status, const std::string& key) {
+  for (const auto& entry : status.values) {
+    if (entry.key == key) return entry.value;
+  }
+  return "(no " + key + ")";
+}
+
+TEST(Diagnostics, WarnUntilThereIsAMap) {
+  const auto status = summary_of({});
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "no map published yet");
+}
+
+TEST(Diagnostics, AreOkWithAMap) {
+  MapStatistics statistics = statistics_of(core::StatusCode::kOk);
+  statistics.lanes = 3;
+  statistics.last_map.fusion.source = core::Source::kFused;
+  const auto status = summary_of(statistics);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  EXPECT_EQ(status.message, "3 lanes from FUSED");
+}
+
+TEST(Diagnostics, WarnOfWhatEveryDrivePassesThrough) {
+  for (const auto code :
+       {core::StatusCode::kNoLocalization, core::StatusCode::kNoNavigationLine, core::StatusCode::kLineEnd}) {
+    EXPECT_EQ(summary_of(statistics_of(code)).level, DiagnosticStatus::WARN) << status_name(code);
+  }
+}
+
+TEST(Diagnostics, AreInErrorOtherwise) {
+  for (const auto code :
+       {core::StatusCode::kStaleLocalization, core::StatusCode::kInvalidLocalization,
+        core::StatusCode::kOffRoute, core::StatusCode::kMarkersUnusable, core::StatusCode::kFrameMismatch,
+        core::StatusCode::kNoTransform, core::StatusCode::kContractViolation}) {
+    EXPECT_EQ(summary_of(statistics_of(code)).level, DiagnosticStatus::ERROR) << status_name(code);
+  }
+}
+
+TEST(Diagnostics, NameTheReason) {
+  EXPECT_EQ(summary_of(statistics_of(core::StatusCode::kOffRoute, "far away")).message,
+            "OFF_ROUTE: far away");
+}
+
+TEST(Diagnostics, TellTheNumbersBehindIt) {
+  MapStatistics statistics = statistics_of(core::StatusCode::kOk);
+  statistics.maps = 12;
+  statistics.lanes = 3;
+  statistics.lateral_offset = -0.25;
+  statistics.remaining_distance = 410.5;
+  statistics.tick_time = 0.0015;
+  statistics.last_map.current_lane_id = "middle";
+  statistics.last_map.fusion.source = core::Source::kNavigationLine;
+  statistics.last_map.fusion.marker_range = 35.5;
+  statistics.last_map.fusion.marker_age = 0.125;
+  statistics.empty_maps = {{"OFF_ROUTE", 4}, {"STALE_LOCALIZATION", 2}};
+  const auto status = summary_of(statistics);
+  EXPECT_EQ(value_of(status, "source"), "NAVIGATION_LINE");
+  EXPECT_EQ(value_of(status, "current lane"), "middle");
+  EXPECT_EQ(value_of(status, "lateral offset [m]"), "-0.25");
+  EXPECT_EQ(value_of(status, "remaining distance [m]"), "410.5");
+  EXPECT_EQ(value_of(status, "marker range [m]"), "35.5");
+  EXPECT_EQ(value_of(status, "marker age [s]"), "0.125");
+  EXPECT_EQ(value_of(status, "tick time [ms]"), "1.5");
+  EXPECT_EQ(value_of(status, "maps"), "12");
+  EXPECT_EQ(value_of(status, "empty maps, OFF_ROUTE"), "4");
+  EXPECT_EQ(value_of(status, "empty maps, STALE_LOCALIZATION"), "2");
+}
+
+TEST(Diagnostics, NamesAreThoseOfTheMessages) {
+  const auto name = [](uint8_t code) { return status_name(static_cast<core::StatusCode>(code)); };
+  EXPECT_EQ(name(MapStatus::OK), "OK");
+  EXPECT_EQ(name(MapStatus::NO_LOCALIZATION), "NO_LOCALIZATION");
+  EXPECT_EQ(name(MapStatus::STALE_LOCALIZATION), "STALE_LOCALIZATION");
+  EXPECT_EQ(name(MapStatus::INVALID_LOCALIZATION), "INVALID_LOCALIZATION");
+  EXPECT_EQ(name(MapStatus::NO_NAVIGATION_LINE), "NO_NAVIGATION_LINE");
+  EXPECT_EQ(name(MapStatus::OFF_ROUTE), "OFF_ROUTE");
+  EXPECT_EQ(name(MapStatus::LINE_END), "LINE_END");
+  EXPECT_EQ(name(MapStatus::MARKERS_UNUSABLE), "MARKERS_UNUSABLE");
+  EXPECT_EQ(name(MapStatus::FRAME_MISMATCH), "FRAME_MISMATCH");
+  EXPECT_EQ(name(MapStatus::NO_TRANSFORM), "NO_TRANSFORM");
+  EXPECT_EQ(name(MapStatus::CONTRACT_VIOLATION), "CONTRACT_VIOLATION");
+  const auto source = [](uint8_t number) { return source_name(static_cast<core::Source>(number)); };
+  EXPECT_EQ(source(FusionState::NONE), "NONE");
+  EXPECT_EQ(source(FusionState::FUSED), "FUSED");
+  EXPECT_EQ(source(FusionState::NAVIGATION_LINE), "NAVIGATION_LINE");
+  EXPECT_EQ(source(FusionState::LANE_MARKERS), "LANE_MARKERS");
+}
+
+TEST(Diagnostics, NumbersOfNoNameAreUnknown) {
+  EXPECT_EQ(status_name(static_cast<core::StatusCode>(200)), "UNKNOWN");
+  EXPECT_EQ(source_name(static_cast<core::Source>(200)), "UNKNOWN");
+}
+
+}  // namespace
+}  // namespace relative_map
