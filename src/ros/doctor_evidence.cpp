@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "doctor_rules.hpp"
+#include "relative_map/pipeline/input_check.hpp"
 #include "relative_map/ros/conversions.hpp"
 #include "relative_map/ros/map_engine.hpp"
 
@@ -127,12 +128,16 @@ Evidence::Evidence(const Observations& observations)
   }
   const std::string& base_frame = seen.config.pipeline.base_frame;
   for (const auto& [at, message] : seen.localization.messages) {
-    core::Localization localization = to_core(*message, seen.config.orientation_convention, at);
+    const auto checked = core::check_localization(to_core(*message, seen.config.orientation_convention, at));
+    if (checked.refusal) {
+      refused_poses.push_back(checked.refusal->message);
+      continue;
+    }
     const std::string link = link_of(message->child_frame_id, base_frame);
     const auto link_from_base = seen.transforms(link, base_frame);
-    if (link_from_base && link != base_frame)
-      localization = core::carry_to_base(localization, *link_from_base);
-    const auto state = core::make_vehicle_state(localization, std::nullopt);
+    const bool carry = link_from_base && link != base_frame;
+    const auto state = core::make_vehicle_state(
+        carry ? core::carry_to_base(checked.input, *link_from_base) : checked.input, std::nullopt);
     if (const auto* status = std::get_if<core::Status>(&state)) {
       refused_poses.push_back(status->message);
     } else {
