@@ -1,5 +1,7 @@
 #include "relative_map/pipeline/lane_path.hpp"
 
+#include <algorithm>
+
 namespace relative_map::core {
 
 void locate_vehicle(LanePath& lane) {
@@ -18,6 +20,12 @@ void locate_vehicle(LanePath& lane) {
   const Point2 direction = beyond ? end.direction : (b.position - a.position).normalized();
   lane.s_at_vehicle = a.s + foot.fraction * (b.s - a.s) + (beyond ? direction.dot(offset) : 0.0);
   lane.l = cross(direction, offset);
+}
+
+void sort_left_to_right(std::vector<LanePath>& lanes) {
+  // The vehicle lies left of a lane by l, so the leftmost lane has the smallest l.
+  std::stable_sort(lanes.begin(), lanes.end(),
+                   [](const LanePath& a, const LanePath& b) { return a.l < b.l; });
 }
 
 Polyline positions_of(const PathPoints& points) {

@@ -73,9 +73,12 @@ std::string narrow_sentence(const LanePath& lane, const LanePath& better, const 
 }
 
 /// One pass over the neighbours; true if a lane was taken out and the neighbours are others now.
-bool drop_one(std::vector<LanePath>& lanes, double half_width, std::vector<std::string>& sentences) {
+bool drop_one(std::vector<LanePath>& lanes, double half_width, const std::string& kept,
+              std::vector<std::string>& sentences) {
   for (std::size_t i = 0; i + 1 < lanes.size(); ++i) {
-    const std::size_t worse = lanes[i].priority > lanes[i + 1].priority ? i : i + 1;
+    const bool right_is_better =
+        lanes[i].priority > lanes[i + 1].priority ? lanes[i].id != kept : lanes[i + 1].id == kept;
+    const std::size_t worse = right_is_better ? i : i + 1;
     const LanePath& better = lanes[worse == i ? i + 1 : i];
     LanePath& lane = lanes[worse];
     const std::optional<double> narrow = first_narrow_place(lane, better, 2.0 * half_width);
@@ -191,9 +194,10 @@ SharedBorder shared_border(const LanePath& left, const LanePath& right, const st
 
 }  // namespace
 
-std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width) {
+std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width,
+                                           const std::string& kept) {
   std::vector<std::string> sentences;
-  while (drop_one(lanes, half_width, sentences)) {
+  while (drop_one(lanes, half_width, kept, sentences)) {
   }
   return sentences;
 }

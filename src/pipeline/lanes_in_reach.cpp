@@ -85,9 +85,7 @@ std::variant<std::vector<LanePath>, Status> LanesInReach::find(const VehicleStat
     lanes.back().left_half_width = config.map_param.default_left_width;
     lanes.back().right_half_width = config.map_param.default_right_width;
   }
-  // The vehicle lies left of a line by l, so the leftmost line has the smallest l.
-  std::stable_sort(lanes.begin(), lanes.end(),
-                   [](const LanePath& a, const LanePath& b) { return a.l < b.l; });
+  sort_left_to_right(lanes);
   for (std::string& remark : drop_narrow_lanes(lanes, config.footprint.half_width)) {
     remarks.push_back(std::move(remark));
   }

@@ -22,15 +22,48 @@ std::vector<WidthSample> measure(const PathPoints& path, const Polyline& border,
   return samples;
 }
 
-LaneBoundary make_boundary(Polyline points, BoundaryType type, double range) {
+LaneBoundary make_boundary(Polyline points) {
   LaneBoundary boundary;
   boundary.points = std::move(points);
   boundary.length = chord_length(boundary.points);
-  boundary.paint.push_back({0.0, type});
-  if (type != BoundaryType::kUnknown && range < boundary.length) {
-    boundary.paint.push_back({range, BoundaryType::kUnknown});
-  }
+  boundary.paint.push_back({0.0, BoundaryType::kUnknown});
   return boundary;
+}
+
+/// Arc length along a border beside the place s [m] of the path.
+double s_beside(const PathPoints& path, double s, const Polyline& border) {
+  PolylineWalker walker(border);
+  for (auto vertex = path.begin(); vertex != path.end() && vertex->s < s; ++vertex) {
+    walker.next(vertex->position);
+  }
+  std::size_t hint = 0;
+  const Foot foot = walker.next(interpolate(path, s, hint).position);
+  const auto end = border.begin() + static_cast<std::ptrdiff_t>(foot.segment) + 1;
+  return chord_length({border.begin(), end}) + (foot.point - border[foot.segment]).norm();
+}
+
+/// The paint's type on the stretch of a border beside which it was seen from the path, unknown elsewhere.
+void paint_boundary(LaneBoundary& boundary, BoundaryType type, const PathPoints& path, double from,
+                    double to) {
+  if (type == BoundaryType::kUnknown || to <= std::max(0.0, from)) return;
+  const double start = from > 0.0 ? s_beside(path, from, boundary.points) : 0.0;
+  const double end = s_beside(path, to, boundary.points);
+  if (end <= start) return;
+  if (start == 0.0) boundary.paint.clear();
+  boundary.paint.push_back({start, type});
+  if (end < boundary.length) boundary.paint.push_back({end, BoundaryType::kUnknown});
+}
+
+/// The border between two lanes is one line of paint: the current lane's is also its neighbour's.
+void add_paint(RelativeMap& map, std::size_t current, const SeenPaint& paint) {
+  Lane& lane = map.lanes[current];
+  const auto add = [&](LaneBoundary& boundary, BoundaryType type) {
+    paint_boundary(boundary, type, lane.path, paint.from, paint.to);
+  };
+  add(lane.left_boundary, paint.left);
+  add(lane.right_boundary, paint.right);
+  if (!lane.left_neighbor_id.empty()) add(map.lanes[current - 1].right_boundary, paint.left);
+  if (!lane.right_neighbor_id.empty()) add(map.lanes[current + 1].left_boundary, paint.right);
 }
 
 Lane make_lane(LanePath path, double speed_limit) {
@@ -69,18 +102,9 @@ RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::siz
   map.frame_id = config.base_frame;
   const std::size_t n = lanes.size();
   for (std::size_t i = 0; i < n; ++i) {
-    // The border between two lanes is one line of paint: the current lane's is also its neighbour's.
-    const bool left_of_current = i + 1 == current && borders.left_is_shared[current];
-    const bool right_of_current = i == current + 1 && borders.left_is_shared[i];
-    const BoundaryType left = i == current       ? paint.left
-                              : right_of_current ? paint.right
-                                                 : BoundaryType::kUnknown;
-    const BoundaryType right = i == current      ? paint.right
-                               : left_of_current ? paint.left
-                                                 : BoundaryType::kUnknown;
     Lane lane = make_lane(std::move(lanes[i]), config.map_param.default_speed_limit);
-    lane.left_boundary = make_boundary(std::move(borders.left[i]), left, paint.range);
-    lane.right_boundary = make_boundary(std::move(borders.right[i]), right, paint.range);
+    lane.left_boundary = make_boundary(std::move(borders.left[i]));
+    lane.right_boundary = make_boundary(std::move(borders.right[i]));
     lane.left_samples = measure(lane.path, lane.left_boundary.points);
     lane.right_samples = measure(lane.path, lane.right_boundary.points);
     if (i > 0 && borders.left_is_shared[i]) {
@@ -89,6 +113,7 @@ RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::siz
     }
     map.lanes.push_back(std::move(lane));
   }
+  add_paint(map, current, paint);
   map.lanes.front().left_boundary.is_virtual = !config.generate_left_boundary;
   shift_priorities(map.lanes);
   map.roads.push_back(make_road(map.lanes));

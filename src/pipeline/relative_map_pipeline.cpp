@@ -91,13 +91,10 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
   if (config_->navigation_lane.lane_source == LaneSource::kOfflineGenerated) {
     auto found = lanes_in_reach_.find(vehicle, *config_, remarks_);
     if (auto* lanes = std::get_if<std::vector<LanePath>>(&found)) {
-      const std::size_t current = choose_current(*lanes);
+      std::size_t current = choose_current(*lanes);
       FusionState fusion;
       fusion.source = Source::kNavigationLine;
-      if (markers) {
-        fusion = fuse_fixed_weight(*markers, config_->navigation_lane.lane_marker_weight,
-                                   config_->lane_fusion.fade_length, (*lanes)[current]);
-      }
+      if (markers) fusion = fuse(*markers, *lanes, current);
       return finish(std::move(*lanes), current, markers, std::move(fusion), vehicle);
     }
     no_lines = std::get<Status>(found);
@@ -154,7 +151,8 @@ std::optional<MarkerPath> RelativeMapPipeline::marker_path(const VehicleState& v
 std::size_t RelativeMapPipeline::choose_current(const std::vector<LanePath>& lanes) const {
   std::size_t current = 0;
   const auto distance = [&](std::size_t i) {
-    return std::abs(lanes[i].l) - (lanes[i].id == current_id_ ? kHysteresis : 0.0);
+    const double to_start = std::max(0.0, -lanes[i].s_at_vehicle);  // of a lane that begins ahead
+    return std::hypot(lanes[i].l, to_start) - (lanes[i].id == current_id_ ? kHysteresis : 0.0);
   };
   for (std::size_t i = 1; i < lanes.size(); ++i) {
     if (distance(i) < distance(current)) current = i;
@@ -162,16 +160,30 @@ std::size_t RelativeMapPipeline::choose_current(const std::vector<LanePath>& lan
   return current;
 }
 
+FusionState RelativeMapPipeline::fuse(const MarkerPath& markers, std::vector<LanePath>& lanes,
+                                      std::size_t& current) {
+  FusionState fusion = fuse_fixed_weight(markers, config_->navigation_lane.lane_marker_weight,
+                                         config_->lane_fusion.fade_length, lanes[current]);
+  // The lane has moved: others may lie too near to where it is now, which is where the paint says.
+  const std::string id = lanes[current].id;
+  sort_left_to_right(lanes);
+  add_remarks(drop_narrow_lanes(lanes, config_->footprint.half_width, id));
+  for (current = 0; lanes[current].id != id;) ++current;
+  return fusion;
+}
+
 RelativeMap RelativeMapPipeline::finish(std::vector<LanePath> lanes, std::size_t current,
                                         const std::optional<MarkerPath>& markers, FusionState fusion,
                                         const VehicleState& vehicle) {
   SeenPaint paint;
+  const double s_at_vehicle = lanes[current].s_at_vehicle;
   if (markers) {
+    const double s_from_markers = s_at_vehicle - markers->path.s_at_vehicle;
     paint = {markers->left_paint.value_or(BoundaryType::kUnknown),
-             markers->right_paint.value_or(BoundaryType::kUnknown), markers->trusted_to};
+             markers->right_paint.value_or(BoundaryType::kUnknown), markers->trusted_from + s_from_markers,
+             markers->trusted_to + s_from_markers};
     fusion.marker_age = std::max(0.0, to_seconds(vehicle.stamp - markers_->stamp));
   }
-  const double s_at_vehicle = lanes[current].s_at_vehicle;
   LaneBorders borders = find_borders(lanes, config_->navigation_lane.max_lane_half_width);
   RelativeMap map = build_map(std::move(lanes), std::move(borders), current, paint, *config_);
   map.stamp = vehicle.stamp;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "relative_map/geometry/path_point.hpp"
 #include "relative_map/model/inputs.hpp"
@@ -24,6 +25,9 @@ struct LanePath {
 /// Sets s_at_vehicle and l from the points: where the origin of the body frame is beside the path, or beside
 /// the tangent at an end that it lies beyond. The search starts at the first point.
 void locate_vehicle(LanePath& lane);
+
+/// By the vehicle's place beside them.
+void sort_left_to_right(std::vector<LanePath>& lanes);
 
 Polyline positions_of(const PathPoints& points);
 

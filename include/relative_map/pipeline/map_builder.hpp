@@ -10,11 +10,11 @@
 
 namespace relative_map::core {
 
-/// Paint seen beside the current lane, up to a distance [m] along it.
+/// Paint seen beside the current lane between two places along it.
 struct SeenPaint {
   BoundaryType left = BoundaryType::kUnknown;
   BoundaryType right = BoundaryType::kUnknown;
-  double range = 0.0;
+  double from = 0.0, to = 0.0;  ///< [m] s of the lane
 };
 
 /// Lanes, boundaries, samples, neighbours and the road around them. `lanes` and `borders` belong together.

@@ -52,6 +52,7 @@ class RelativeMapPipeline {
   void add_remarks(const std::vector<std::string>& remarks);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
   std::size_t choose_current(const std::vector<LanePath>& lanes) const;
+  FusionState fuse(const MarkerPath& markers, std::vector<LanePath>& lanes, std::size_t& current);
   RelativeMap finish(std::vector<LanePath> lanes, std::size_t current,
                      const std::optional<MarkerPath>& markers, FusionState fusion,
                      const VehicleState& vehicle);
