@@ -100,6 +100,7 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
     no_lines = std::get<Status>(found);
   }
   if (!markers) {
+    if (!markers_) remarks_.push_back("lane markers: none received yet");
     for (const std::string& remark : remarks_) no_lines.message += "; " + remark;
     return no_lines;
   }
@@ -134,7 +135,7 @@ std::optional<MarkerPath> RelativeMapPipeline::marker_path(const VehicleState& v
     remarks_.push_back("lane markers: " + why);
     return std::nullopt;
   };
-  if (!markers_) return unusable("none received yet");
+  if (!markers_) return std::nullopt;  // a vehicle without a lane camera is no fault
   const Time age = now - markers_->stamp;
   if (to_seconds(age) > config_->max_age.lane_markers)
     return unusable("they are " + seconds_text(age) + " old");

@@ -77,9 +77,14 @@ void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticSt
   status.add("source", source_name(map.fusion.source));
   status.add("current lane", map.current_lane_id);
   status.add("lateral offset [m]", statistics.lateral_offset);
+  status.add("heading offset [rad]", statistics.heading_offset);
   status.add("remaining distance [m]", statistics.remaining_distance);
   status.add("marker range [m]", map.fusion.marker_range);
   status.add("marker age [s]", map.fusion.marker_age);
+  for (const auto& [topic, input] : statistics.inputs) {
+    status.add(topic + " rate [Hz]", input.rate);
+    status.add(topic + " age [s]", input.age);
+  }
   status.add("tick time [ms]", 1e3 * statistics.tick_time);
   status.add("maps", statistics.maps);
   for (const auto& [reason, count] : statistics.empty_maps) status.add("empty maps, " + reason, count);

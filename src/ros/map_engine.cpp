@@ -15,6 +15,12 @@ std::string link_of(const std::string& frame_id, const std::string& base_frame) 
   return frame_id.empty() ? base_frame : frame_name(frame_id);
 }
 
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
 }  // namespace
 
 MapEngine::MapEngine(const NodeConfig& config, LinkTransforms transforms)
@@ -101,12 +107,9 @@ MapMsgPtr MapEngine::tick(const ros::Time& now) {
       fault ? pipeline_.empty_map(*fault, mapped_pose_.value_or(to_core(now))) : pipeline_.tick(to_core(now));
   map_ = core::checked(std::move(built), {config_->base_frame, published_sequence_num_});
   published_sequence_num_ = map_.sequence_num;
-  if (map_.status.code == core::StatusCode::kOk) {
-    for (const std::string& remark : pipeline_.remarks()) {
-      map_.status.message += (map_.status.message.empty() ? "" : "; ") + remark;
-    }
-    if (!marker_fault_.empty()) map_.status.message = marker_fault_;
-  }
+  remarks_ = fault ? std::vector<std::string>() : pipeline_.remarks();
+  if (!marker_fault_.empty()) remarks_.push_back(marker_fault_);
+  if (map_.status.code == core::StatusCode::kOk) map_.status.message = joined(remarks_);
   const MapMsgPtr message = to_message(map_);
   if (markers_) message->lane_marker = *markers_;
   if (localization_) message->localization = *localization_;

@@ -2,13 +2,9 @@
 
 #include <XmlRpcValue.h>
 
-#include "relative_map/pipeline/lane_path.hpp"
-
 namespace relative_map {
 
 namespace {
-
-constexpr double kLogPeriod = 5.0;  // [s] between repetitions of one complaint
 
 NodeConfig load_config(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
   XmlRpc::XmlRpcValue tree;
@@ -43,18 +39,6 @@ core::PipelineConfig with_request(core::PipelineConfig config, RelativeMapConfig
   return config;
 }
 
-/// How far the vehicle is to the left of the current lane's centerline.
-double lateral_offset(const core::RelativeMap& map) {
-  for (const core::Lane& lane : map.lanes) {
-    if (lane.id != map.current_lane_id) continue;
-    core::LanePath path;
-    path.points = lane.path;
-    core::locate_vehicle(path);
-    return path.l;
-  }
-  return 0.0;
-}
-
 }  // namespace
 
 RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
@@ -70,21 +54,10 @@ RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   markers_publisher_ = private_nh_.advertise<visualization_msgs::MarkerArray>("markers", 1);
   centerline_publisher_ = private_nh_.advertise<nav_msgs::Path>("centerline", 1);
 
-  const auto no_delay = ros::TransportHints().tcpNoDelay();
-  localization_subscriber_ = nh_.subscribe<LocalizationEstimate>(
-      "localization", 100,
-      [this](const LocalizationEstimateConstPtr& message) {
-        engine_.on_localization(message, ros::Time::now());
-      },
-      ros::VoidConstPtr(), no_delay);
-  chassis_subscriber_ = nh_.subscribe<Chassis>(
-      "chassis", 10,
-      [this](const ChassisConstPtr& message) { engine_.on_chassis(message, ros::Time::now()); },
-      ros::VoidConstPtr(), no_delay);
-  lane_markers_subscriber_ = nh_.subscribe<LaneMarkers>(
-      "perception/lane_markers", 10,
-      [this](const LaneMarkersConstPtr& message) { engine_.on_lane_markers(message, ros::Time::now()); },
-      ros::VoidConstPtr(), no_delay);
+  subscribe<LocalizationEstimate>("localization", 100, localization_subscriber_, &MapEngine::on_localization);
+  subscribe<Chassis>("chassis", 10, chassis_subscriber_, &MapEngine::on_chassis);
+  subscribe<LaneMarkers>("perception/lane_markers", 10, lane_markers_subscriber_,
+                         &MapEngine::on_lane_markers);
   reset_service_ = private_nh_.advertiseService("reset", &RelativeMapNode::on_reset, this);
 
   ros::SubscribeOptions intake = ros::SubscribeOptions::create<NavigationInfo>(
@@ -100,12 +73,25 @@ RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
 
   diagnostics_.setHardwareID("none");
   diagnostics_.add("relative map", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    summarize(statistics_, status);
+    summarize(observer_.statistics(ros::Time::now(), ros::WallTime::now()), status);
   });
   diagnostics_timer_ = nh_.createWallTimer(
       ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
   timer_ = nh_.createTimer(ros::Duration(1.0 / config_.rate), &RelativeMapNode::on_timer, this);
   intake_spinner_.start();
+}
+
+template <class Message>
+void RelativeMapNode::subscribe(const std::string& topic, uint32_t queue_size, ros::Subscriber& subscriber,
+                                Handler<Message> handler) {
+  using Pointer = boost::shared_ptr<const Message>;
+  const boost::function<void(const Pointer&)> callback = [this, topic, handler](const Pointer& message) {
+    const ros::Time now = ros::Time::now();
+    observer_.note_input(topic, message->header.stamp, ros::WallTime::now());
+    (engine_.*handler)(message, now);
+  };
+  subscriber = nh_.subscribe<Message>(topic, queue_size, callback, ros::VoidConstPtr(),
+                                      ros::TransportHints().tcpNoDelay());
 }
 
 RelativeMapNode::~RelativeMapNode() {
@@ -144,8 +130,9 @@ void RelativeMapNode::on_timer(const ros::TimerEvent&) {
   const MapMsgPtr map = engine_.tick(ros::Time::now());
   if (!map) return;
   map_publisher_.publish(map);
-  statistics_.tick_time = (ros::WallTime::now() - start).toSec();
-  log_status(*map);
+  const ros::WallTime end = ros::WallTime::now();
+  observer_.note_map(engine_.last_map(), (end - start).toSec(), end);
+  log_status(end);
   publish_views(*map);
 }
 
@@ -156,30 +143,20 @@ void RelativeMapNode::publish_views(const MapMsg& map) {
   if (centerline_publisher_.getNumSubscribers() > 0) centerline_publisher_.publish(centerline(map));
 }
 
-void RelativeMapNode::log_status(const MapMsg& map) {
-  const core::RelativeMap& built = engine_.last_map();
-  const std::string name = status_name(built.status.code);
-  ++statistics_.maps;
-  if (map.status.code != MapStatus::OK) ++statistics_.empty_maps[name];
-  statistics_.lanes = built.lanes.size();
-  statistics_.lateral_offset = lateral_offset(built);
-  for (const core::Lane& lane : built.lanes) {
-    if (lane.id == built.current_lane_id) statistics_.remaining_distance = lane.remaining_distance;
+void RelativeMapNode::log_status(const ros::WallTime& now) {
+  const core::RelativeMap& map = engine_.last_map();
+  const auto code = static_cast<uint8_t>(map.status.code);
+  const bool changed = code != logged_code_;
+  logged_code_ = code;
+  if (code == MapStatus::OK) {
+    if (changed) ROS_INFO_STREAM("the map is back: " << map.lanes.size() << " lanes");
+    for (const std::string& remark : engine_.remarks()) {
+      if (complaints_.due(remark, now)) ROS_WARN_STREAM(remark);
+    }
+    return;
   }
-  statistics_.last_map.status = built.status;
-  statistics_.last_map.fusion = built.fusion;
-  statistics_.last_map.current_lane_id = built.current_lane_id;
-
-  const bool changed = map.status.code != logged_code_;
-  logged_code_ = map.status.code;
-  if (map.status.code == MapStatus::OK) {
-    if (changed) ROS_INFO_STREAM("the map is back: " << built.lanes.size() << " lanes");
-    if (!map.status.message.empty()) ROS_WARN_STREAM_THROTTLE(kLogPeriod, map.status.message);
-  } else if (changed) {
-    ROS_WARN_STREAM("no map: " << name << ": " << map.status.message);
-  } else {
-    ROS_WARN_STREAM_THROTTLE(kLogPeriod, "still no map: " << name << ": " << map.status.message);
-  }
+  const std::string complaint = "no map: " + status_name(map.status.code) + ": " + map.status.message;
+  if (complaints_.due(complaint, now) || changed) ROS_WARN_STREAM(complaint);
 }
 
 void RelativeMapNode::on_reconfigure(RelativeMapConfig& request, uint32_t) {

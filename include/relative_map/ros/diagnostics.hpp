@@ -9,15 +9,22 @@
 
 namespace relative_map {
 
+struct InputStatistics {
+  double rate = 0.0;  ///< [Hz]
+  double age = 0.0;   ///< [s] of the newest message's stamp
+};
+
 /// What /diagnostics tells of the maps.
 struct MapStatistics {
-  core::RelativeMap last_map;  ///< without its lanes' geometry
+  core::RelativeMap last_map;  ///< without its lanes; the status is one that has lasted
   std::size_t lanes = 0;
   double lateral_offset = 0.0;      ///< [m] of the vehicle from the current lane
+  double heading_offset = 0.0;      ///< [rad] of the vehicle from the current lane
   double remaining_distance = 0.0;  ///< [m]
   double tick_time = 0.0;           ///< [s] of the last tick
   std::size_t maps = 0;
   std::map<std::string, std::size_t> empty_maps;  ///< by reason
+  std::map<std::string, InputStatistics> inputs;  ///< by topic
 };
 
 /// Name of a status code as in MapStatus.

@@ -40,6 +40,8 @@ class MapEngine {
 
   /// The map of the last tick, as the pipeline built it.
   const core::RelativeMap& last_map() const { return map_; }
+  /// What the last tick noticed about its inputs, a sentence each.
+  const std::vector<std::string>& remarks() const { return remarks_; }
   const core::NavigationLines* navigation_lines() const { return lines_.get(); }
   const core::PipelineConfig& config() const { return *config_; }
 
@@ -60,6 +62,7 @@ class MapEngine {
   std::optional<core::Time> mapped_pose_;
   std::optional<std::uint32_t> published_sequence_num_;
   core::RelativeMap map_;
+  std::vector<std::string> remarks_;
 };
 
 }  // namespace relative_map

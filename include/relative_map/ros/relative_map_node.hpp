@@ -13,9 +13,10 @@
 #include <mutex>
 #include <string>
 
-#include "relative_map/ros/diagnostics.hpp"
 #include "relative_map/ros/map_engine.hpp"
 #include "relative_map/ros/map_markers.hpp"
+#include "relative_map/ros/map_observer.hpp"
+#include "relative_map/ros/throttled_log.hpp"
 
 namespace relative_map {
 
@@ -29,13 +30,19 @@ class RelativeMapNode {
   ~RelativeMapNode();
 
  private:
+  template <class Message>
+  using Handler = void (MapEngine::*)(const boost::shared_ptr<const Message>&, const ros::Time&);
+
+  template <class Message>
+  void subscribe(const std::string& topic, uint32_t queue_size, ros::Subscriber& subscriber,
+                 Handler<Message> handler);
   void on_navigation(const NavigationInfoConstPtr& message);
   void on_timer(const ros::TimerEvent& event);
   void on_reconfigure(RelativeMapConfig& request, uint32_t level);
   bool on_reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void pick_up_lines();
   void publish_views(const MapMsg& map);
-  void log_status(const MapMsg& map);
+  void log_status(const ros::WallTime& now);
 
   ros::NodeHandle nh_, private_nh_;
   NodeConfig config_;
@@ -53,8 +60,9 @@ class RelativeMapNode {
   ros::ServiceServer reset_service_;
   ros::Timer timer_;
   uint8_t logged_code_ = MapStatus::OK;
+  ThrottledLog complaints_;
 
-  MapStatistics statistics_;
+  MapObserver observer_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostics_timer_;
   boost::recursive_mutex reconfigure_mutex_;  ///< the server wants one that outlives it

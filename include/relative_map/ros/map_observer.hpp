@@ -1,0 +1,37 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "relative_map/ros/diagnostics.hpp"
+
+namespace relative_map {
+
+/// Watches inputs and maps go by, for /diagnostics. A fault counts only once it has lasted: one bad frame is
+/// no alarm.
+class MapObserver {
+ public:
+  void note_input(const std::string& topic, const ros::Time& stamp, const ros::WallTime& arrival);
+  /// `tick_time` [s] is what the map took to make and publish.
+  void note_map(const core::RelativeMap& map, double tick_time, const ros::WallTime& now);
+  /// Rates and ages are those at the time of the call.
+  MapStatistics statistics(const ros::Time& now, const ros::WallTime& wall_now) const;
+
+ private:
+  struct Input {
+    ros::Time stamp;  ///< of the newest message
+    std::deque<ros::WallTime> arrivals;
+  };
+
+  void settle_status(const core::Status& status, const ros::WallTime& now);
+
+  MapStatistics statistics_;
+  std::map<std::string, Input> inputs_;
+  std::optional<ros::WallTime> differs_since_;  ///< the status from the settled one
+};
+
+}  // namespace relative_map

@@ -1,0 +1,70 @@
+#include "relative_map/ros/map_observer.hpp"
+
+#include <algorithm>
+
+#include "relative_map/pipeline/lane_path.hpp"
+
+namespace relative_map {
+
+namespace {
+
+const ros::WallDuration kRateWindow(5.0);
+const ros::WallDuration kSettleTime(0.5);  // that another status must last
+
+}  // namespace
+
+void MapObserver::note_input(const std::string& topic, const ros::Time& stamp, const ros::WallTime& arrival) {
+  Input& input = inputs_[topic];
+  input.stamp = stamp;
+  input.arrivals.push_back(arrival);
+  while (input.arrivals.front() < arrival - kRateWindow) input.arrivals.pop_front();
+}
+
+void MapObserver::settle_status(const core::Status& status, const ros::WallTime& now) {
+  core::Status& settled = statistics_.last_map.status;
+  const bool first = statistics_.maps == 0;
+  if (first || status.code == settled.code) {
+    differs_since_.reset();
+    settled = status;
+    return;
+  }
+  if (!differs_since_) differs_since_ = now;
+  if (now - *differs_since_ < kSettleTime) return;
+  differs_since_.reset();
+  settled = status;
+}
+
+void MapObserver::note_map(const core::RelativeMap& map, double tick_time, const ros::WallTime& now) {
+  settle_status(map.status, now);
+  ++statistics_.maps;
+  statistics_.tick_time = tick_time;
+  statistics_.last_map.fusion = map.fusion;
+  statistics_.last_map.current_lane_id = map.current_lane_id;
+  statistics_.lanes = map.lanes.size();
+  if (map.lanes.empty()) ++statistics_.empty_maps[status_name(map.status.code)];
+  const auto current = std::find_if(map.lanes.begin(), map.lanes.end(),
+                                    [&](const core::Lane& lane) { return lane.id == map.current_lane_id; });
+  if (current == map.lanes.end()) return;
+  core::LanePath path;
+  path.points = current->path;
+  core::locate_vehicle(path);
+  std::size_t hint = 0;
+  statistics_.lateral_offset = path.l;
+  statistics_.heading_offset = -core::interpolate(path.points, path.s_at_vehicle, hint).theta;
+  statistics_.remaining_distance = current->remaining_distance;
+}
+
+MapStatistics MapObserver::statistics(const ros::Time& now, const ros::WallTime& wall_now) const {
+  MapStatistics result = statistics_;
+  for (const auto& [topic, input] : inputs_) {
+    const auto recent =
+        std::count_if(input.arrivals.begin(), input.arrivals.end(),
+                      [&](const ros::WallTime& arrival) { return arrival >= wall_now - kRateWindow; });
+    const double watched = std::min(kRateWindow.toSec(), (wall_now - input.arrivals.front()).toSec());
+    const double rate = watched > 0.0 ? static_cast<double>(recent) / watched : 0.0;
+    result.inputs[topic] = {rate, (now - input.stamp).toSec()};
+  }
+  return result;
+}
+
+}  // namespace relative_map
