@@ -6,6 +6,8 @@ namespace relative_map {
 
 namespace {
 
+constexpr std::size_t kMaxLogged = 10;  // lines, and faults, of one message
+
 NodeConfig load_config(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
   XmlRpc::XmlRpcValue tree;
   private_nh.getParam(private_nh.getNamespace(), tree);
@@ -37,6 +39,18 @@ RelativeMapConfig reconfigure_view(core::PipelineConfig config) {
 core::PipelineConfig with_request(core::PipelineConfig config, RelativeMapConfig request) {
   exchange([](double& from, double& to) { to = from; }, request, config);
   return config;
+}
+
+void log_intake(const core::NavigationLines& lines) {
+  const std::size_t faults = std::min(lines.faults.size(), kMaxLogged);
+  for (std::size_t i = 0; i < faults; ++i) ROS_WARN_STREAM("navigation: " << lines.faults[i]);
+  for (std::size_t i = 0; i < std::min(lines.lines.size(), kMaxLogged); ++i) {
+    const core::NavigationLine& line = lines.lines[i];
+    ROS_INFO_STREAM("navigation: line '" << line.id << "', priority " << line.priority << ", "
+                                         << line.points.size() << " points, " << line.length << " m"
+                                         << (line.closed() ? ", closed" : ""));
+  }
+  ROS_INFO_STREAM("navigation: " << lines.lines.size() << " lines, " << lines.faults.size() << " faults");
 }
 
 }  // namespace
@@ -105,12 +119,10 @@ void RelativeMapNode::on_navigation(const NavigationInfoConstPtr& message) {
     config = intake_config_;
   }
   auto lines = MapEngine::prepare(*message, config);
-  for (const std::string& fault : lines->faults) ROS_WARN_STREAM("navigation: " << fault);
-  for (const core::NavigationLine& line : lines->lines) {
-    ROS_INFO_STREAM("navigation: line '" << line.id << "', priority " << line.priority << ", "
-                                         << line.points.size() << " points, " << line.length << " m"
-                                         << (line.closed() ? ", closed" : ""));
-  }
+  log_intake(*lines);
+  // The one before the last is freed here, and not by the tick that lets go of it.
+  kept_lines_[0] = std::move(kept_lines_[1]);
+  kept_lines_[1] = lines;
   const std::lock_guard<std::mutex> lock(intake_mutex_);
   new_lines_ = std::move(lines);
 }

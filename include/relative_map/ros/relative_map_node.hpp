@@ -8,6 +8,7 @@
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <array>
 #include <boost/thread/recursive_mutex.hpp>
 #include <memory>
 #include <mutex>
@@ -51,9 +52,10 @@ class RelativeMapNode {
   MapEngine engine_;
   MapMarkers markers_;
 
-  std::mutex intake_mutex_;  ///< guards the two below
+  std::mutex intake_mutex_;  ///< guards the next two
   std::shared_ptr<const core::NavigationLines> new_lines_;
   core::PipelineConfig intake_config_;
+  std::array<std::shared_ptr<const core::NavigationLines>, 2> kept_lines_;  ///< of the intake's thread
 
   ros::Publisher map_publisher_, markers_publisher_, centerline_publisher_;
   ros::Subscriber localization_subscriber_, chassis_subscriber_, lane_markers_subscriber_;
