@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relative_map/pipeline/relative_map_pipeline.hpp"
+
+// What is driven on in the benchmarks.
+namespace relative_map::core::benchmarks {
+
+/// Lines, and a vehicle on one of them.
+struct Scene {
+  NavigationInfo navigation;
+  Pose2 map_from_base;
+};
+
+/// The three recorded lines and the vehicle as it was recorded with them; none where they are not there.
+std::optional<Scene> recorded_lines();
+/// Side by side, 3.5 m apart, gently winding.
+Scene parallel_lines(std::size_t count, double length, double spacing);
+/// A lap of `length` [m] whose last point is its first.
+Scene closed_loop(double length, double spacing);
+
+/// A pipeline that has the scene's lines, and lane markers beside the vehicle; without them if not asked for.
+RelativeMapPipeline pipeline_of(const Scene& scene, bool with_markers);
+/// Gives the pose of the scene, a little later each time.
+RelativeMap tick(RelativeMapPipeline& pipeline, const Scene& scene, Time& now);
+
+}  // namespace relative_map::core::benchmarks
