@@ -149,45 +149,63 @@ Polyline own_border(const LanePath& lane, const std::vector<Beside>& beside, dou
   return border;
 }
 
-struct SharedBorder {
-  Polyline of_left_lane, of_right_lane;
+/// A point of the border that two lanes share, and the places beside it.
+struct Middle {
+  Point2 point;
+  double spacing;          ///< [m] of the centerlines
+  double left_s, right_s;  ///< [m] along the lanes
 };
 
-/// The midline, prolonged for each lane to its own ends.
-SharedBorder shared_border(const LanePath& left, const LanePath& right, const std::vector<Beside>& beside,
-                           const Stretch& stretch) {
-  const Beside &first = beside[stretch.first], &last = beside[stretch.last];
-  const double first_s = left.points[stretch.first].s, last_s = left.points[stretch.last].s;
-  SharedBorder border;
-  Polyline midline;
-  for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
-    midline.push_back(0.5 * (left.points[i].position + beside[i].point));
-  }
+/// Beside an end of the right lane; none: the left lane does not reach there. `near` is a segment close by.
+std::optional<Middle> middle_at_end(const LanePath& left, const PathPoint& end, std::size_t near) {
+  const Polyline centerline = positions_of(left.points);
+  PolylineWalker walker(centerline, std::min(near, centerline.size() - 2));
+  const Foot foot = walker.next(end.position);
+  if (walker.beyond_end(foot)) return std::nullopt;
+  const double before = left.points[foot.segment].s, after = left.points[foot.segment + 1].s;
+  return Middle{0.5 * (foot.point + end.position), std::sqrt(foot.squared_distance),
+                before + foot.fraction * (after - before), end.s};
+}
 
-  const auto prolong = [](const PathPoint& vertex, double own, Side side, double spacing, double distance) {
-    return border_point(vertex, half_width_past_neighbor(own, 0.5 * spacing, distance), side);
+/// The line midway between two lanes, as far as both reach.
+std::vector<Middle> midline(const LanePath& left, const LanePath& right, const std::vector<Beside>& beside,
+                            const Stretch& stretch) {
+  std::vector<Middle> line;
+  for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
+    const PathPoint& vertex = left.points[i];
+    line.push_back({0.5 * (vertex.position + beside[i].point), beside[i].spacing, vertex.s, beside[i].s});
+  }
+  // Where the right lane starts or ends between two vertices of the left one, so does the shared border.
+  if (const auto start = middle_at_end(left, right.points.front(), stretch.first)) {
+    line.front().right_s = start->right_s;
+    if (start->left_s < line.front().left_s - kJoinGap) line.insert(line.begin(), *start);
+  }
+  if (const auto end = middle_at_end(left, right.points.back(), stretch.last)) {
+    line.back().right_s = end->right_s;
+    if (end->left_s > line.back().left_s + kJoinGap) line.push_back(*end);
+  }
+  return line;
+}
+
+/// The midline, prolonged to the ends of one of its lanes. `own` [m] is that lane's half width; `s_of` tells
+/// where along that lane a point of the midline is.
+template <class PlaceAlong>
+Polyline prolonged(const std::vector<Middle>& midline, const LanePath& lane, double own, Side side,
+                   PlaceAlong s_of) {
+  const Middle &first = midline.front(), &last = midline.back();
+  const auto beyond = [&](const PathPoint& vertex, const Middle& end) {
+    const double distance = std::abs(vertex.s - s_of(end));
+    return border_point(vertex, half_width_past_neighbor(own, 0.5 * end.spacing, distance), side);
   };
-  Polyline& of_left = border.of_left_lane;
-  Polyline& of_right = border.of_right_lane;
-  for (const PathPoint& vertex : left.points) {
-    if (vertex.s >= first_s) break;
-    of_left.push_back(
-        prolong(vertex, left.right_half_width, Side::kRight, first.spacing, first_s - vertex.s));
+  Polyline border;
+  border.reserve(lane.points.size() + 2);
+  for (const PathPoint& vertex : lane.points) {
+    if (vertex.s >= s_of(first) - kJoinGap) break;
+    border.push_back(beyond(vertex, first));
   }
-  for (const PathPoint& vertex : right.points) {
-    if (vertex.s >= first.s - kJoinGap) break;
-    of_right.push_back(
-        prolong(vertex, right.left_half_width, Side::kLeft, first.spacing, first.s - vertex.s));
-  }
-  of_left.insert(of_left.end(), midline.begin(), midline.end());
-  of_right.insert(of_right.end(), midline.begin(), midline.end());
-  for (const PathPoint& vertex : left.points) {
-    if (vertex.s <= last_s) continue;
-    of_left.push_back(prolong(vertex, left.right_half_width, Side::kRight, last.spacing, vertex.s - last_s));
-  }
-  for (const PathPoint& vertex : right.points) {
-    if (vertex.s <= last.s + kJoinGap) continue;
-    of_right.push_back(prolong(vertex, right.left_half_width, Side::kLeft, last.spacing, vertex.s - last.s));
+  for (const Middle& middle : midline) border.push_back(middle.point);
+  for (const PathPoint& vertex : lane.points) {
+    if (vertex.s > s_of(last) + kJoinGap) border.push_back(beyond(vertex, last));
   }
   return border;
 }
@@ -212,9 +230,11 @@ LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_wid
     const std::vector<Beside> beside = look_beside(left, right);
     const std::optional<Stretch> stretch = stretch_beside(beside);
     if (share_border(beside, stretch, 2.0 * max_half_width)) {
-      SharedBorder shared = shared_border(left, right, beside, *stretch);
-      borders.right[i] = std::move(shared.of_left_lane);
-      borders.left[i + 1] = std::move(shared.of_right_lane);
+      const std::vector<Middle> middle = midline(left, right, beside, *stretch);
+      borders.right[i] = prolonged(middle, left, left.right_half_width, Side::kRight,
+                                   [](const Middle& point) { return point.left_s; });
+      borders.left[i + 1] = prolonged(middle, right, right.left_half_width, Side::kLeft,
+                                      [](const Middle& point) { return point.right_s; });
       borders.left_is_shared[i + 1] = true;
     } else {
       borders.right[i] = own_border(left, beside, left.right_half_width, Side::kRight);

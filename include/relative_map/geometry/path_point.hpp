@@ -53,8 +53,9 @@ Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point);
 /// on to the next foot, so that points in the polyline's order cost O(1) each.
 class PolylineWalker {
  public:
-  /// `polyline` must have two or more points and outlive the walker.
-  explicit PolylineWalker(const Polyline& polyline) : polyline_(polyline) {}
+  /// `polyline` must have two or more points and outlive the walker, which starts at `segment`.
+  explicit PolylineWalker(const Polyline& polyline, std::size_t segment = 0)
+      : polyline_(polyline), segment_(segment) {}
   Foot next(const Point2& point);
   /// Whether a foot is held at an end of the polyline: the point lies beside nothing.
   bool beyond_end(const Foot& foot) const {
@@ -67,7 +68,7 @@ class PolylineWalker {
   bool past_end(std::size_t segment, const Point2& point) const;
 
   const Polyline& polyline_;
-  std::size_t segment_ = 0;
+  std::size_t segment_;
 };
 
 double chord_length(const Polyline& points);
