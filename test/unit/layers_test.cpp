@@ -1,0 +1,82 @@
+// A layer may use only those above it in the table: what a file includes shows it.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace relative_map::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What each layer may use of the package, itself included. `ros` is the only one that may use ROS.
+const std::map<std::string, std::set<std::string>> kMayUse = {
+    {"geometry", {"geometry"}},
+    {"model", {"geometry", "model"}},
+    {"pipeline", {"geometry", "model", "pipeline"}},
+    {"io", {"geometry", "model", "io"}},
+    {"simulation", {"geometry", "model", "pipeline", "io", "simulation"}},
+    {"ros", {"geometry", "model", "pipeline", "io", "ros"}},
+};
+
+/// The headers that a file includes, in either kind of brackets.
+std::vector<std::string> includes_of(const fs::path& file) {
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"])re");
+  std::ifstream stream(file);
+  std::vector<std::string> headers;
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    if (std::regex_search(line, match, kInclude)) headers.push_back(match[1]);
+  }
+  return headers;
+}
+
+bool is_ros(const std::string& header) {
+  static const std::regex kRos(
+      R"re(^(ros|tf2|tf2_ros|nodelet|pluginlib|rosbag|urdf|diagnostic_updater|dynamic_reconfigure|[a-z_0-9]+_(msgs|srvs))/)re");
+  static const std::regex kMessage(R"re(^relative_map/[A-Z]\w*\.h$)re");
+  return std::regex_search(header, kRos) || std::regex_search(header, kMessage);
+}
+
+/// The fault in what one file of a layer includes; empty: none.
+std::string fault_of(const std::string& layer, const std::string& header) {
+  if (layer != "ros" && is_ros(header)) return "a ROS header";
+  static const std::regex kOwn(R"re(^relative_map/([a-z]+)/)re");
+  std::smatch match;
+  if (!std::regex_search(header, match, kOwn)) return "";
+  return kMayUse.at(layer).count(match[1]) > 0 ? "" : "a layer that is not above it";
+}
+
+TEST(Layers, UseOnlyThoseAboveThem) {
+  const fs::path root = RELATIVE_MAP_SOURCE_DIR;
+  for (const auto& [layer, unused] : kMayUse) {
+    std::size_t files = 0;
+    for (const fs::path& folder : {root / "include/relative_map" / layer, root / "src" / layer}) {
+      for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
+        ++files;
+        for (const std::string& header : includes_of(file.path())) {
+          EXPECT_EQ(fault_of(layer, header), "") << file.path() << " includes " << header;
+        }
+      }
+    }
+    EXPECT_GT(files, 1u) << "the folders of " << layer;
+  }
+}
+
+TEST(Layers, AWrongIncludeIsFound) {
+  EXPECT_EQ(fault_of("pipeline", "ros/time.h"), "a ROS header");
+  EXPECT_EQ(fault_of("io", "relative_map/MapMsg.h"), "a ROS header");
+  EXPECT_EQ(fault_of("simulation", "geometry_msgs/Point.h"), "a ROS header");
+  EXPECT_EQ(fault_of("geometry", "relative_map/model/inputs.hpp"), "a layer that is not above it");
+  EXPECT_EQ(fault_of("ros", "relative_map/simulation/road.hpp"), "a layer that is not above it");
+  EXPECT_EQ(fault_of("ros", "ros/time.h"), "");
+  EXPECT_EQ(fault_of("pipeline", "relative_map/model/map.hpp"), "");
+}
+
+}  // namespace
+}  // namespace relative_map::core
