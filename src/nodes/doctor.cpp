@@ -132,7 +132,7 @@ class Listener {
   }
 
   void ask_master() {
-    const MasterSurvey survey;
+    MasterSurvey survey;
     const auto fill = [&survey](doctor::Topic& topic, const std::string& type) {
       topic = survey.topic(topic.name, type);
     };

@@ -71,7 +71,7 @@ MasterSurvey::MasterSurvey() {
   for (const ros::master::TopicInfo& topic : topics) types_[topic.name] = topic.datatype;
 }
 
-doctor::Topic MasterSurvey::topic(const std::string& name, const std::string& type) const {
+doctor::Topic MasterSurvey::topic(const std::string& name, const std::string& type) {
   doctor::Topic topic;
   topic.name = name;
   topic.type = type;
@@ -87,21 +87,25 @@ doctor::Topic MasterSurvey::topic(const std::string& name, const std::string& ty
   return topic;
 }
 
-doctor::Publisher MasterSurvey::publisher(const std::string& node, const std::string& topic) const {
-  doctor::Publisher publisher{node, "", "", false};
-  if (auto uri = ask_master("lookupNode", node)) publisher.uri = static_cast<std::string>(*uri);
-  auto publications = ask_for_publications(publisher.uri);
-  publisher.answers = publications.has_value();
-  if (!publications) {
-    // The master keeps one type for all publishers of a topic: better than none.
-    if (const auto found = types_.find(topic); found != types_.end()) publisher.type = found->second;
-    return publisher;
+const MasterSurvey::Node& MasterSurvey::ask(const std::string& name) {
+  const auto [entry, is_new] = nodes_.try_emplace(name);
+  Node& node = entry->second;
+  if (!is_new) return node;
+  if (auto uri = ask_master("lookupNode", name)) node.uri = static_cast<std::string>(*uri);
+  auto publications = ask_for_publications(node.uri);
+  node.answers = publications.has_value();
+  for (int i = 0; publications && i < publications->size(); ++i) {
+    node.types[(*publications)[i][0]] = static_cast<std::string>((*publications)[i][1]);
   }
-  for (int i = 0; i < publications->size(); ++i) {
-    if (static_cast<std::string>((*publications)[i][0]) != topic) continue;
-    publisher.type = static_cast<std::string>((*publications)[i][1]);
-  }
-  return publisher;
+  return node;
+}
+
+doctor::Publisher MasterSurvey::publisher(const std::string& name, const std::string& topic) {
+  const Node& node = ask(name);
+  // The master keeps one type for all publishers of a topic: better than none.
+  const std::map<std::string, std::string>& types = node.types.count(topic) > 0 ? node.types : types_;
+  const auto type = types.find(topic);
+  return {name, node.uri, type == types.end() ? "" : type->second, node.answers};
 }
 
 }  // namespace relative_map

@@ -15,15 +15,24 @@ class MasterSurvey {
   /// Throws std::runtime_error if the master does not answer.
   MasterSurvey();
   /// A topic by its resolved name; `type` is the one that this package gives it.
-  doctor::Topic topic(const std::string& name, const std::string& type) const;
+  doctor::Topic topic(const std::string& name, const std::string& type);
 
  private:
   using Nodes = std::vector<std::string>;
 
-  doctor::Publisher publisher(const std::string& node, const std::string& topic) const;
+  /// A node as it answers for itself.
+  struct Node {
+    std::string uri;
+    bool answers = false;
+    std::map<std::string, std::string> types;  ///< by topic that it publishes
+  };
+
+  const Node& ask(const std::string& node);
+  doctor::Publisher publisher(const std::string& node, const std::string& topic);
 
   std::map<std::string, Nodes> publishers_, subscribers_;  ///< by topic
   std::map<std::string, std::string> types_;               ///< by topic, as the master has them
+  std::map<std::string, Node> nodes_;                      ///< those that were asked
 };
 
 }  // namespace relative_map

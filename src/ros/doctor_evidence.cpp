@@ -146,6 +146,13 @@ Evidence::Evidence(const Observations& observations)
   }
 }
 
+std::optional<double> Evidence::heading_not_in_radians() const {
+  for (const PoseSample& pose : poses) {
+    if (std::abs(pose.heading) > 2.0 * core::kPi + 0.01) return pose.heading;
+  }
+  return std::nullopt;
+}
+
 bool Evidence::heading_is_never_filled() const {
   const auto is_zero = [](const PoseSample& pose) { return pose.heading == 0.0; };
   if (poses.empty() || !std::all_of(poses.begin(), poses.end(), is_zero)) return false;

@@ -47,6 +47,8 @@ Findings localized_link_is_known(const Evidence& evidence) {
   if (seen.localization.messages.empty()) return {};
   const std::string& base_frame = seen.config.pipeline.base_frame;
   const std::string link = link_of(seen.localization.messages.back().message->child_frame_id, base_frame);
+  if (link == base_frame)
+    return {ok(seen.localization.topic.name + " is about " + quoted(link) + ", the body frame")};
   if (seen.transforms(link, base_frame)) {
     return {ok(seen.localization.topic.name + " is about link " + quoted(link) + ", whose place in " +
                quoted(base_frame) + " is known")};

@@ -85,7 +85,7 @@ Findings velocity_fits_motion(const Evidence& evidence) {
 
 Findings yaw_rate_fits_motion(const Evidence& evidence) {
   constexpr double kClearTurn = 0.15;  // [rad] while listening
-  if (evidence.heading_is_never_filled()) return {};
+  if (!evidence.heading_is_an_angle()) return {};
   double turned = 0.0, summed = 0.0;
   for (std::size_t i = 1; i < evidence.poses.size(); ++i) {
     const PoseSample &a = evidence.poses[i - 1], &b = evidence.poses[i];

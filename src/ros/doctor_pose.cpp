@@ -94,18 +94,16 @@ Findings heading_is_filled(const Evidence& evidence) {
 }
 
 Findings heading_is_in_radians(const Evidence& evidence) {
-  for (const PoseSample& pose : evidence.poses) {
-    if (!(std::abs(pose.heading) > 2.0 * kPi + 0.01)) continue;
-    return {wrong(evidence.seen.localization.topic.name + ": pose.heading is " + fixed(pose.heading, 1) +
-                      ", which is no angle in radians from -pi to pi",
-                  "publish pose.heading in radians, not in degrees")};
-  }
-  return {};
+  const std::optional<double> heading = evidence.heading_not_in_radians();
+  if (!heading) return {};
+  return {wrong(evidence.seen.localization.topic.name + ": pose.heading is " + fixed(*heading, 1) +
+                    ", which is no angle in radians from -pi to pi",
+                "publish pose.heading in radians, not in degrees")};
 }
 
 Findings orientation_fits_heading(const Evidence& evidence) {
   const MeanDirection off = heading_from_orientation(evidence.poses);
-  if (std::isnan(off.mean) || evidence.heading_is_never_filled()) return {};
+  if (std::isnan(off.mean) || !evidence.heading_is_an_angle()) return {};
   const std::string& topic = evidence.seen.localization.topic.name;
   if (std::abs(off.mean) < kAgree && off.spread < kSteady) {
     return {ok(topic + ": heading and orientation agree")};
@@ -125,7 +123,7 @@ Findings orientation_fits_heading(const Evidence& evidence) {
 }
 
 Findings heading_fits_motion(const Evidence& evidence) {
-  if (evidence.legs.size() < kEnoughLegs || evidence.heading_is_never_filled()) return {};
+  if (evidence.legs.size() < kEnoughLegs || !evidence.heading_is_an_angle()) return {};
   const MeanDirection off = direction_from_course(evidence);
   if (std::isnan(off.mean)) return {};
   const bool from_heading = heading_is_given(evidence);

@@ -58,6 +58,10 @@ struct Evidence {
 
   /// Whether the heading was 0 all the time although the vehicle points elsewhere.
   bool heading_is_never_filled() const;
+  /// A heading that is no angle in radians; none: all are.
+  std::optional<double> heading_not_in_radians() const;
+  /// Whether there is a point in comparing the heading with others.
+  bool heading_is_an_angle() const { return !heading_is_never_filled() && !heading_not_in_radians(); }
 };
 
 /// A mean direction and how far single ones are from it [rad]; NaN if there are none.

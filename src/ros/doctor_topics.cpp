@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 
 #include "doctor_rules.hpp"
 
@@ -81,16 +82,21 @@ Findings topics_have_publishers(const Evidence& evidence) {
 }
 
 Findings publishers_answer(const Evidence& evidence) {
-  Findings findings;
+  std::map<std::string, std::vector<std::string>> topics;  // by node
+  std::map<std::string, std::string> uris;
   for (const Topic* topic : all_topics(evidence.seen)) {
     for (const Publisher& publisher : topic->publishers) {
       if (publisher.answers) continue;
-      findings.push_back(wrong(
-          publisher.node + " is registered as publisher of " + topic->name + ", but does not answer at " +
-              (publisher.uri.empty() ? "any address" : publisher.uri),
-          "if it was killed, start it again (rosnode cleanup forgets it); if it runs on another machine, set "
-          "ROS_IP there to an address that can be reached from here"));
+      topics[publisher.node].push_back(topic->name);
+      uris[publisher.node] = publisher.uri.empty() ? "any address" : publisher.uri;
     }
+  }
+  Findings findings;
+  for (const auto& [node, names] : topics) {
+    findings.push_back(wrong(
+        node + " is registered as publisher of " + list(names) + ", but does not answer at " + uris[node],
+        "if it was killed or hangs, start it again (rosnode cleanup forgets it); if it runs on another "
+        "machine, set ROS_IP there to an address that can be reached from here"));
   }
   return findings;
 }
