@@ -7,7 +7,7 @@
 
 namespace relative_map::core {
 
-Point2 Road::Piece::position_after(double distance) const {
+Point2 RoadShape::Piece::position_after(double distance) const {
   // Ten Gauss points integrate a turn of 1 rad to the last digit, so panels are made of that size. It holds
   // for straights and arcs too: no need for cases, and none for small-angle limits.
   const double turn = std::max(std::abs(kappa), std::abs(kappa + distance * dkappa)) * distance;
@@ -23,7 +23,7 @@ Point2 Road::Piece::position_after(double distance) const {
   return result;
 }
 
-Road& Road::add_clothoid(double length, double kappa_start, double kappa_end) {
+RoadShape& RoadShape::add_clothoid(double length, double kappa_start, double kappa_end) {
   if (!(length > 0.0) || !std::isfinite(length)) {
     throw std::invalid_argument("the length of a piece of road must be above 0");
   }
@@ -41,30 +41,30 @@ Road& Road::add_clothoid(double length, double kappa_start, double kappa_end) {
   return *this;
 }
 
-Road& Road::add_clothoid(double length, double kappa_end) {
+RoadShape& RoadShape::add_clothoid(double length, double kappa_end) {
   return add_clothoid(length, kappa_end_, kappa_end);
 }
 
-Road& Road::add_straight(double length) {
+RoadShape& RoadShape::add_straight(double length) {
   return add_clothoid(length, 0.0, 0.0);
 }
 
-Road& Road::add_arc(double length, double kappa) {
+RoadShape& RoadShape::add_arc(double length, double kappa) {
   return add_clothoid(length, kappa, kappa);
 }
 
-Road& Road::add_arc(double length) {
+RoadShape& RoadShape::add_arc(double length) {
   return add_arc(length, kappa_end_);
 }
 
-const Road::Piece& Road::piece_at(double s) const {
+const RoadShape::Piece& RoadShape::piece_at(double s) const {
   if (pieces_.empty()) throw std::out_of_range("the road has no pieces");
   const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), s,
                                       [](double value, const Piece& piece) { return value < piece.s; });
   return after == pieces_.begin() ? pieces_.front() : *(after - 1);
 }
 
-PathPoint Road::at(double s, double l) const {
+PathPoint RoadShape::at(double s, double l) const {
   s = std::clamp(s, 0.0, length_);
   const Piece& piece = piece_at(s);
   const double distance = s - piece.s;
@@ -84,7 +84,7 @@ PathPoint Road::at(double s, double l) const {
   return point;
 }
 
-RecordedLine Road::lane(double offset, double spacing, const std::string& name) const {
+RecordedLine RoadShape::lane(double offset, double spacing, const std::string& name) const {
   if (!(spacing > 0.0)) throw std::invalid_argument("the spacing of a lane's points must be above 0");
   const auto steps = static_cast<std::size_t>(std::max(1.0, std::round(length_ / spacing)));
   RecordedLine line;
@@ -105,7 +105,7 @@ RecordedLine Road::lane(double offset, double spacing, const std::string& name) 
   return line;
 }
 
-std::vector<RecordedLine> Road::lanes(std::size_t count, double lane_width, double spacing) const {
+std::vector<RecordedLine> RoadShape::lanes(std::size_t count, double lane_width, double spacing) const {
   std::vector<RecordedLine> lines;
   for (std::size_t i = 0; i < count; ++i) {
     const double offset = lane_width * (0.5 * (static_cast<double>(count) - 1.0) - static_cast<double>(i));
@@ -115,8 +115,8 @@ std::vector<RecordedLine> Road::lanes(std::size_t count, double lane_width, doub
   return lines;
 }
 
-Road demo_road(const Pose2& start) {
-  Road road(start);
+RoadShape demo_road(const Pose2& start) {
+  RoadShape road(start);
   road.add_straight(120.0);
   road.add_clothoid(60.0, 1.0 / 300.0).add_arc(120.0).add_clothoid(60.0, 0.0).add_straight(60.0);
   road.add_clothoid(40.0, -1.0 / 100.0).add_arc(80.0).add_clothoid(40.0, 0.0).add_straight(50.0);
@@ -125,9 +125,9 @@ Road demo_road(const Pose2& start) {
   return road;
 }
 
-Road closed_road(const Pose2& start) {
+RoadShape closed_road(const Pose2& start) {
   const double radius = 60.0, clothoid = 40.0;
-  Road road(start);
+  RoadShape road(start);
   for (int half = 0; half < 2; ++half) {  // each turns by pi, so the two are mirror images and meet
     road.add_straight(150.0).add_clothoid(clothoid, 1.0 / radius);
     road.add_arc(kPi * radius - clothoid).add_clothoid(clothoid, 0.0);

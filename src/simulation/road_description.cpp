@@ -25,7 +25,7 @@ std::vector<double> numbers_in(std::istream& stream) {
   return numbers;
 }
 
-void add_piece(const std::string& text, Road& road) {
+void add_piece(const std::string& text, RoadShape& road) {
   std::istringstream stream = stream_of(text);
   std::string kind;
   stream >> kind;
@@ -50,10 +50,10 @@ void add_piece(const std::string& text, Road& road) {
 
 }  // namespace
 
-Road parse_road(const std::string& text, const Pose2& start) {
+RoadShape parse_road(const std::string& text, const Pose2& start) {
   if (text == "demo") return demo_road(start);
   if (text == "closed") return closed_road(start);
-  Road road(start);
+  RoadShape road(start);
   std::istringstream pieces(text);
   std::string piece;
   while (std::getline(pieces, piece, ';')) {

@@ -59,7 +59,7 @@ TEST(Geometry, OfACircleIsExactHoweverUnevenlySampled) {
 }
 
 TEST(Geometry, OfAClothoidIsThatOfTheCurve) {
-  const Road road = Road().add_clothoid(100.0, -0.01, 0.02);
+  const RoadShape road = RoadShape().add_clothoid(100.0, -0.01, 0.02);
   Polyline points;
   for (int i = 0; i <= 200; ++i) points.push_back(road.at(0.5 * i).position);
   const PathPoints path = path_through(points);

@@ -23,8 +23,8 @@ Point2 clothoid_by_simpson(double length, double kappa_start, double kappa_end) 
   return {sum.real(), sum.imag()};
 }
 
-TEST(Road, AStraightIsStraight) {
-  const Road road = Road(Pose2(Point2(10.0, -5.0), 0.5)).add_straight(100.0);
+TEST(RoadShape, AStraightIsStraight) {
+  const RoadShape road = RoadShape(Pose2(Point2(10.0, -5.0), 0.5)).add_straight(100.0);
   EXPECT_EQ(road.length(), 100.0);
   const PathPoint point = road.at(70.0);
   EXPECT_NEAR(point.position.x(), 10.0 + 70.0 * std::cos(0.5), 1e-12);
@@ -35,9 +35,9 @@ TEST(Road, AStraightIsStraight) {
   EXPECT_EQ(point.s, 70.0);
 }
 
-TEST(Road, AnArcIsACircle) {
+TEST(RoadShape, AnArcIsACircle) {
   for (const double radius : {50.0, -300.0}) {
-    const Road road = Road().add_arc(400.0, 1.0 / radius);
+    const RoadShape road = RoadShape().add_arc(400.0, 1.0 / radius);
     for (double s = 0.0; s <= 400.0; s += 7.0) {
       const PathPoint point = road.at(s);
       EXPECT_NEAR(point.position.x(), radius * std::sin(s / radius), 1e-10);
@@ -48,9 +48,9 @@ TEST(Road, AnArcIsACircle) {
   }
 }
 
-TEST(Road, AClothoidIsItsIntegral) {
-  const Road gentle = Road().add_clothoid(100.0, 0.0, 0.01);
-  const Road sharp = Road().add_clothoid(100.0, -0.05, 0.2);
+TEST(RoadShape, AClothoidIsItsIntegral) {
+  const RoadShape gentle = RoadShape().add_clothoid(100.0, 0.0, 0.01);
+  const RoadShape sharp = RoadShape().add_clothoid(100.0, -0.05, 0.2);
   EXPECT_LT((gentle.at(100.0).position - clothoid_by_simpson(100.0, 0.0, 0.01)).norm(), 1e-10);
   EXPECT_LT((sharp.at(100.0).position - clothoid_by_simpson(100.0, -0.05, 0.2)).norm(), 1e-10);
   const PathPoint middle = gentle.at(50.0);
@@ -60,8 +60,8 @@ TEST(Road, AClothoidIsItsIntegral) {
   EXPECT_NEAR(middle.dkappa, 1e-4, 1e-18);
 }
 
-TEST(Road, PiecesMeetWithOneTangent) {
-  const Road road = demo_road();
+TEST(RoadShape, PiecesMeetWithOneTangent) {
+  const RoadShape road = demo_road();
   EXPECT_NEAR(road.length(), 1080.0, 1e-9);
   for (double s = 0.0; s + 0.1 <= road.length(); s += 0.1) {
     const PathPoint here = road.at(s), next = road.at(s + 0.1);
@@ -71,16 +71,16 @@ TEST(Road, PiecesMeetWithOneTangent) {
   }
 }
 
-TEST(Road, MapSizedCoordinatesCostNoDigits) {
+TEST(RoadShape, MapSizedCoordinatesCostNoDigits) {
   const Point2 origin(691188.668784, 3118142.638383);
-  const Road near = demo_road(Pose2(Point2::Zero(), 1.5)), far = demo_road(Pose2(origin, 1.5));
+  const RoadShape near = demo_road(Pose2(Point2::Zero(), 1.5)), far = demo_road(Pose2(origin, 1.5));
   for (double s = 0.0; s <= near.length(); s += 10.0) {
     EXPECT_LT((far.at(s, 3.5).position - origin - near.at(s, 3.5).position).norm(), 2e-9);
   }
 }
 
-TEST(Road, ParallelsKeepTheirDistanceAndTheirGeometry) {
-  const Road road = demo_road();
+TEST(RoadShape, ParallelsKeepTheirDistanceAndTheirGeometry) {
+  const RoadShape road = demo_road();
   for (const double l : {3.5, -3.5, 10.0}) {
     for (double s = 0.05; s < road.length(); s += 3.7) {
       const PathPoint center = road.at(s), beside = road.at(s, l);
@@ -98,16 +98,16 @@ TEST(Road, ParallelsKeepTheirDistanceAndTheirGeometry) {
   }
 }
 
-TEST(Road, AnOffsetBeyondTheCentreIsRefused) {
-  const Road road = Road().add_arc(100.0, 0.05);
+TEST(RoadShape, AnOffsetBeyondTheCentreIsRefused) {
+  const RoadShape road = RoadShape().add_arc(100.0, 0.05);
   EXPECT_NO_THROW(road.at(10.0, 19.9));
   EXPECT_THROW(road.at(10.0, 20.1), std::out_of_range);
   EXPECT_THROW(road.lane(25.0, 1.0), std::out_of_range);
-  EXPECT_THROW(Road().at(0.0), std::out_of_range);
+  EXPECT_THROW(RoadShape().at(0.0), std::out_of_range);
 }
 
-TEST(Road, ALaneIsSampledEvenlyFromEndToEnd) {
-  const Road road = demo_road();
+TEST(RoadShape, ALaneIsSampledEvenlyFromEndToEnd) {
+  const RoadShape road = demo_road();
   const RecordedLine lane = road.lane(-3.5, 0.4, "right");
   EXPECT_EQ(lane.name, "right");
   ASSERT_EQ(lane.points.size(), 2701u);
@@ -121,8 +121,8 @@ TEST(Road, ALaneIsSampledEvenlyFromEndToEnd) {
   }
 }
 
-TEST(Road, LanesLieSideBySideFromTheLeft) {
-  const Road road = Road().add_straight(10.0);
+TEST(RoadShape, LanesLieSideBySideFromTheLeft) {
+  const RoadShape road = RoadShape().add_straight(10.0);
   const std::vector<RecordedLine> lanes = road.lanes(3, 3.5, 1.0);
   ASSERT_EQ(lanes.size(), 3u);
   for (std::size_t i = 0; i < lanes.size(); ++i) {
@@ -134,8 +134,8 @@ TEST(Road, LanesLieSideBySideFromTheLeft) {
   EXPECT_DOUBLE_EQ(road.lanes(2, 4.0, 1.0)[0].points[0].y, 2.0);
 }
 
-TEST(Road, TheClosedRoadCloses) {
-  const Road road = closed_road(Pose2(Point2(691188.0, 3118142.0), 2.0));
+TEST(RoadShape, TheClosedRoadCloses) {
+  const RoadShape road = closed_road(Pose2(Point2(691188.0, 3118142.0), 2.0));
   for (const double l : {0.0, 3.5, -3.5}) {
     const PathPoint start = road.at(0.0, l), end = road.at(road.length(), l);
     EXPECT_LT((end.position - start.position).norm(), 1e-8);
@@ -145,16 +145,16 @@ TEST(Road, TheClosedRoadCloses) {
   }
 }
 
-TEST(Road, FaultyPiecesAreRefused) {
-  EXPECT_THROW(Road().add_straight(0.0), std::invalid_argument);
-  EXPECT_THROW(Road().add_straight(-1.0), std::invalid_argument);
-  EXPECT_THROW(Road().add_straight(std::nan("")), std::invalid_argument);
-  EXPECT_THROW(Road().add_arc(10.0, INFINITY), std::invalid_argument);
-  EXPECT_THROW(Road().add_straight(10.0).lane(0.0, 0.0), std::invalid_argument);
+TEST(RoadShape, FaultyPiecesAreRefused) {
+  EXPECT_THROW(RoadShape().add_straight(0.0), std::invalid_argument);
+  EXPECT_THROW(RoadShape().add_straight(-1.0), std::invalid_argument);
+  EXPECT_THROW(RoadShape().add_straight(std::nan("")), std::invalid_argument);
+  EXPECT_THROW(RoadShape().add_arc(10.0, INFINITY), std::invalid_argument);
+  EXPECT_THROW(RoadShape().add_straight(10.0).lane(0.0, 0.0), std::invalid_argument);
 }
 
 TEST(RoadDescription, IsReadPieceByPiece) {
-  const Road road = parse_road(" straight 100; clothoid 40 0.01 ;arc 60; clothoid 40 0; arc 5 -0.1;");
+  const RoadShape road = parse_road(" straight 100; clothoid 40 0.01 ;arc 60; clothoid 40 0; arc 5 -0.1;");
   EXPECT_EQ(road.length(), 245.0);
   EXPECT_NEAR(road.at(120.0).kappa, 0.005, 1e-15);
   EXPECT_EQ(road.at(170.0).kappa, 0.01);

@@ -164,7 +164,7 @@ TEST(VehicleSimulation, MovesForwardAlongItsHeading) {
 }
 
 TEST(VehicleSimulation, WithoutWanderItIsOnTheRoad) {
-  const Road road = demo_road();
+  const RoadShape road = demo_road();
   VehicleSimulationConfig config = without_noise();
   config.wander = 0.0;
   VehicleSimulation vehicle = on_demo_road(config);
@@ -177,7 +177,7 @@ TEST(VehicleSimulation, WithoutWanderItIsOnTheRoad) {
 }
 
 TEST(VehicleSimulation, MarkersLieOnThePaint) {
-  const Road road = demo_road();
+  const RoadShape road = demo_road();
   VehicleSimulation vehicle = on_demo_road(without_noise());
   double widest = 0.0, shortest = 1e9;
   drive(vehicle, 200.0, [&] {

@@ -13,19 +13,19 @@ namespace relative_map::core {
 /// A road's reference curve, made of straights, clothoids and arcs that follow each other with one tangent,
 /// and the lanes parallel to it. Known to 1e-9 m on kilometres, so tests can take it for the truth.
 /// s [m] is the arc length along the reference curve, l [m] the lateral offset, left positive.
-class Road {
+class RoadShape {
  public:
   /// `start` is the pose of s = 0 in the map frame; the curvature there is 0 until a piece says otherwise.
-  explicit Road(const Pose2& start = {}) : start_(start) {}
+  explicit RoadShape(const Pose2& start = {}) : start_(start) {}
 
   /// All of them throw std::invalid_argument if `length` [m] is not above 0 or a curvature [1/m] not finite.
-  Road& add_straight(double length);
+  RoadShape& add_straight(double length);
   /// Curvature changes linearly with s, from `kappa_start`, or from where the road's last piece ended.
-  Road& add_clothoid(double length, double kappa_end);
-  Road& add_clothoid(double length, double kappa_start, double kappa_end);
+  RoadShape& add_clothoid(double length, double kappa_end);
+  RoadShape& add_clothoid(double length, double kappa_start, double kappa_end);
   /// Of a given curvature, or with the curvature that the last piece ended with.
-  Road& add_arc(double length, double kappa);
-  Road& add_arc(double length);
+  RoadShape& add_arc(double length, double kappa);
+  RoadShape& add_arc(double length);
 
   double length() const { return length_; }
 
@@ -67,9 +67,9 @@ class Road {
 };
 
 /// The demo's open road, 1.08 km: straights, and curves to both sides of 300, 100, 60 and 200 m radius.
-Road demo_road(const Pose2& start = {});
+RoadShape demo_road(const Pose2& start = {});
 
 /// A stadium of 757 m, driven counter-clockwise: its end is its start.
-Road closed_road(const Pose2& start = {});
+RoadShape closed_road(const Pose2& start = {});
 
 }  // namespace relative_map::core
