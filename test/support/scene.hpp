@@ -28,7 +28,7 @@ inline Localization localization_at(const Pose2& pose, Time stamp, double speed 
 /// output contract.
 class Scene {
  public:
-  explicit Scene(std::vector<RecordedLine> lines, const PipelineConfig& config = {})
+  explicit Scene(std::vector<RecordedLine> lines, const PipelineConfig& config = PipelineConfig())
       : config_(config), pipeline_(std::make_shared<PipelineConfig>(config)) {
     set_lines(std::move(lines));
   }
