@@ -28,8 +28,8 @@ else
     libvisualization-msgs-dev python3-{diagnostic,geometry,nav,visualization}-msgs ros-robot-state-publisher rosbash
     python3-roslaunch python3-rosnode python3-rostopic)
   rviz_packages=(rviz)
-  test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-rosbag python3-rostest
-    librostest-dev clang-format catkin-lint)
+  test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-nodelet python3-rosbag
+    python3-rostest librostest-dev clang-format catkin-lint)
 fi
 picture_packages=(xvfb imagemagick libgl1-mesa-dri)
 
@@ -90,7 +90,7 @@ build_workspace() {
     flock 9
     link_sources "$workspace/src/relative_map"
     source_setup /opt/ros/noetic/setup.bash
-    catkin_make -C "$workspace" -j"$(nproc)" -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@" 2>&1
+    catkin_make -C "$workspace" -j"$(nproc)" -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@" 2>&1
   ) 9>"$workspace/lock" | tee "$log" | progress || {
     grep -E -m 20 -A 9 '([Ee]rror:|CMake Error|undefined reference|\*\*\*)' "$log" >&2 || tail -n 40 "$log" >&2
     fail "the build failed; the whole log is $log"
