@@ -110,18 +110,6 @@ PathPoint interpolate_smoothly(const PathPoints& points, double s, std::size_t& 
   return point;
 }
 
-Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point) {
-  const Point2 segment = b - a;
-  const double squared_length = segment.squaredNorm();
-  Foot foot;
-  if (squared_length > 0.0) {
-    foot.fraction = std::clamp((point - a).dot(segment) / squared_length, 0.0, 1.0);
-  }
-  foot.point = a + foot.fraction * segment;
-  foot.squared_distance = (point - foot.point).squaredNorm();
-  return foot;
-}
-
 bool PolylineWalker::past_start(std::size_t segment, const Point2& point) const {
   return (point - polyline_[segment]).dot(polyline_[segment + 1] - polyline_[segment]) > 0.0;
 }
@@ -130,7 +118,40 @@ bool PolylineWalker::past_end(std::size_t segment, const Point2& point) const {
   return (point - polyline_[segment + 1]).dot(polyline_[segment + 1] - polyline_[segment]) > 0.0;
 }
 
+// Where the polyline was made point by point beside what walks along it, its next vertex is always the near
+// one.
+bool PolylineWalker::beside_next_vertex(const Point2& point, Foot& foot) {
+  const std::size_t i = segment_ + 1;
+  if (i + 1 >= polyline_.size()) return false;
+  const Point2& vertex = polyline_[i];
+  const Point2 before = vertex - polyline_[i - 1], after = polyline_[i + 1] - vertex, offset = point - vertex;
+  const double ahead = offset.dot(after), behind = -offset.dot(before);
+  const double squared_after = after.squaredNorm(), squared_before = before.squaredNorm();
+  // Nearer to another vertex, a segment past that one may be the nearest: look around.
+  if (ahead > 0.5 * squared_after || behind > 0.5 * squared_before) return false;
+  foot.squared_distance = offset.squaredNorm();
+  if (ahead > 0.0 && (behind <= 0.0 || ahead * ahead * squared_before > behind * behind * squared_after)) {
+    foot.segment = i;
+    foot.fraction = ahead / squared_after;
+    foot.point = vertex + foot.fraction * after;
+    foot.squared_distance -= ahead * foot.fraction;
+  } else {
+    const double back = behind > 0.0 ? behind / squared_before : 0.0;
+    foot.segment = i - 1;
+    foot.fraction = 1.0 - back;
+    foot.point = vertex - back * before;
+    foot.squared_distance -= back * std::max(0.0, behind);
+  }
+  segment_ = i;
+  return true;
+}
+
 Foot PolylineWalker::next(const Point2& point) {
+  Foot foot;
+  return beside_next_vertex(point, foot) ? foot : search(point);
+}
+
+Foot PolylineWalker::search(const Point2& point) {
   const std::size_t last = polyline_.size() - 2, start = segment_;
   while (segment_ < last && past_end(segment_, point)) ++segment_;
   if (segment_ == start) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "relative_map/geometry/pose2.hpp"
@@ -47,7 +48,17 @@ struct Foot {
 };
 
 /// The nearest point of the segment a-b to `point`; `segment` of the result is 0.
-Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point);
+inline Foot project_on_segment(const Point2& a, const Point2& b, const Point2& point) {
+  const Point2 segment = b - a;
+  const double squared_length = segment.squaredNorm();
+  Foot foot;
+  if (squared_length > 0.0) {
+    foot.fraction = std::clamp((point - a).dot(segment) / squared_length, 0.0, 1.0);
+  }
+  foot.point = a + foot.fraction * segment;
+  foot.squared_distance = (point - foot.point).squaredNorm();
+  return foot;
+}
 
 /// Walks a polyline beside a moving point: each call starts at the segment where the last one ended and goes
 /// on to the next foot, so that points in the polyline's order cost O(1) each.
@@ -64,6 +75,8 @@ class PolylineWalker {
   }
 
  private:
+  bool beside_next_vertex(const Point2& point, Foot& foot);
+  Foot search(const Point2& point);
   bool past_start(std::size_t segment, const Point2& point) const;
   bool past_end(std::size_t segment, const Point2& point) const;
 
