@@ -20,7 +20,10 @@ std::string text(const Parts&... parts) {
 inline std::string fixed(double value, int digits) {
   char buffer[350];  // any double fits
   std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
-  return buffer;
+  const std::string number = buffer;
+  const bool is_minus_zero =
+      number.front() == '-' && number.find_first_of("123456789in") == std::string::npos;
+  return is_minus_zero ? number.substr(1) : number;
 }
 
 inline std::string degrees(double radians) {
