@@ -109,6 +109,15 @@ void RelativeMapNode::subscribe(const std::string& topic, uint32_t queue_size, r
 }
 
 RelativeMapNode::~RelativeMapNode() {
+  // A nodelet is unloaded while its callbacks run on: each of them must have ended before any member goes.
+  timer_.stop();
+  diagnostics_timer_.stop();
+  for (ros::Subscriber* subscriber : {&localization_subscriber_, &chassis_subscriber_,
+                                      &lane_markers_subscriber_, &navigation_subscriber_}) {
+    subscriber->shutdown();
+  }
+  reset_service_.shutdown();
+  reconfigure_.reset();
   intake_spinner_.stop();
 }
 
