@@ -21,9 +21,9 @@ constexpr const char* kUsage =
     "Listens beside a running system and says in plain sentences what is wrong with it and how to mend it.\n"
     "Exit code 0: all is well; 1: something is wrong; 2: bad arguments, or no master.\n"
     "\n"
-    "  --duration S     how long to listen [s], from 1 to 600 (default 5); the vehicle should move "
-    "meanwhile:\n"
-    "                   what is told by motion (headings, speeds) is else not looked at\n"
+    "  --duration S     how long to listen [s], from 1 to 600 (default 5); the vehicle should move: "
+    "headings\n"
+    "                   and speeds are told by motion\n"
     "  _node:=NAME      name of the map node, to read its parameters (default relative_map)\n"
     "  TOPIC:=OTHER     remaps navigation, localization, chassis, perception/lane_markers or relative_map,\n"
     "                   as for the map node\n";

@@ -9,8 +9,8 @@ namespace relative_map::doctor {
 namespace {
 
 std::string how_to_publish(const std::string& parent, const std::string& child) {
-  return "have robot_state_publisher publish the vehicle's URDF, or: rosrun tf2_ros "
-         "static_transform_publisher "
+  return "have robot_state_publisher publish the vehicle's URDF, or: "
+         "rosrun tf2_ros static_transform_publisher "
          "X Y Z YAW PITCH ROLL " +
          parent + " " + child;
 }

@@ -57,12 +57,10 @@ std::string bring_together(const Evidence& evidence, const Nearest& nearest) {
   if (swapped <= reach(evidence)) return "swap x and y of one of them: east is x, north is y";
   if (nearest.distance >= kOtherOrigin) {
     return "bring both into one map frame: they have another UTM zone, map origin or projection (or one is "
-           "in a "
-           "local frame)";
+           "in a local frame, or in degrees)";
   }
   return "drive to the line, or record one here; if the vehicle stands on it, compare datum and map origin "
-         "of the "
-         "recording and the localization (or raise navigation_lane/max_distance_to_navigation_line)";
+         "of recording and localization (or raise navigation_lane/max_distance_to_navigation_line)";
 }
 
 }  // namespace

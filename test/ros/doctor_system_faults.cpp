@@ -128,7 +128,7 @@ std::vector<Fault> time_faults() {
       {"rates_are_high_enough",
        "SlowLocalization",
        [](Observations& seen) { thin_out(seen.localization.messages, 8); },
-       "/localization comes 2.4 times a second; it should come 10 times",
+       "/localization comes 2.5 times a second; it should come 10 times",
        "raise the rate",
        {}},
       {"inputs_do_not_pause",
