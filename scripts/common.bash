@@ -40,6 +40,8 @@ fail() {
   exit 1
 }
 
+[[ -f $package_root/CMakeLists.txt ]] || fail "these scripts build the package: run them from a checkout of it."
+
 # install_packages PACKAGE...: installs those that are missing, and runs nothing when none is.
 install_packages() {
   local package missing=() as_root=()
