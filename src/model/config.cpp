@@ -74,7 +74,7 @@ std::vector<std::string> PipelineConfig::validate() const {
   if (lane_fusion.method != "fixed_weight") {
     faults.add("lane_fusion/method is '" + lane_fusion.method + "', but must be fixed_weight");
   }
-  faults.range("lane_fusion/fade_length", lane_fusion.fade_length, 1.0, 1e3);
+  faults.range("lane_fusion/fade_length", lane_fusion.fade_length, 10.0, 1e3);
 
   faults.positive("max_age/localization", max_age.localization);
   faults.positive("max_age/chassis", max_age.chassis);

@@ -16,6 +16,7 @@ constexpr double kShortestLane =
 constexpr double kBlendLength = 10.0;  // [m] over which a border leaves the midline where the neighbour ends
 constexpr double kSharpestFold = 0.8;  // of the radius: a border farther inside a curve would fold
 constexpr double kJoinGap = 0.1;       // [m] nearer to the shared part no point is added
+constexpr double kAlmostSquare = 0.1;  // [rad] past its end the other lane still counts as beside
 
 /// What lies beside one vertex of a lane.
 struct Beside {
@@ -32,8 +33,11 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
   result.reserve(lane.points.size());
   for (const PathPoint& vertex : lane.points) {
     const Foot foot = walker.next(vertex.position);
+    const PathPoint& end_vertex = foot.fraction < 0.5 ? other.points.front() : other.points.back();
+    const double distance = std::sqrt(foot.squared_distance);
+    const double past_end = std::abs(end_vertex.direction.dot(vertex.position - foot.point));
     const double start = other.points[foot.segment].s, end = other.points[foot.segment + 1].s;
-    result.push_back({!walker.beyond_end(foot), foot.point, std::sqrt(foot.squared_distance),
+    result.push_back({!walker.beyond_end(foot) || past_end < kAlmostSquare * distance, foot.point, distance,
                       start + foot.fraction * (end - start)});
   }
   return result;

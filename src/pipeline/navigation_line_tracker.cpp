@@ -12,7 +12,6 @@ constexpr double kAlikeDistance = 2.0;  // [m] passes that are this much farther
 constexpr double kMetersPerRadian =
     5.0;                             // without a history, this much heading error weighs as much as a metre
 constexpr double kContinuity = 3.0;  // [m] from the place expected, besides the way driven
-constexpr double kJump = 5.0;        // [m] of movement that the speed does not explain
 
 }  // namespace
 
@@ -77,11 +76,8 @@ double gap_between(const NavigationLine& line, double s, double expected) {
 }  // namespace
 
 std::optional<double> NavigationLineTracker::expected_s(const VehicleState& vehicle) const {
-  if (!last_) return std::nullopt;
+  if (!last_ || has_jumped(last_->vehicle, vehicle)) return std::nullopt;
   const Point2 moved = vehicle.map_from_base.position() - last_->vehicle.map_from_base.position();
-  const double seconds = std::abs(to_seconds(vehicle.stamp - last_->vehicle.stamp));
-  const double speed = std::max(std::abs(vehicle.speed), std::abs(last_->vehicle.speed));
-  if (moved.norm() > kJump + 1.5 * speed * seconds) return std::nullopt;
   return last_->s + moved.dot(last_->direction);
 }
 

@@ -84,7 +84,7 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
   const auto state = vehicle_state(now);
   if (const auto* status = std::get_if<Status>(&state)) return *status;
   const VehicleState& vehicle = std::get<VehicleState>(state);
-  const std::optional<MarkerPath> markers = marker_path(vehicle, now);
+  std::optional<MarkerPath> markers = marker_path(vehicle, now);
 
   Status no_lines{StatusCode::kMarkersUnusable,
                   "lane_source is PERCEPTION, and the lane markers are unusable"};
@@ -94,7 +94,14 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
       std::size_t current = choose_current(*lanes);
       FusionState fusion;
       fusion.source = Source::kNavigationLine;
-      if (markers) fusion = fuse(*markers, *lanes, current);
+      if (markers) {
+        if (const auto why = trust_within_lane((*lanes)[current], *markers)) {
+          remarks_.push_back("lane markers: " + *why);
+          markers.reset();
+        } else {
+          fusion = fuse(*markers, *lanes, current);
+        }
+      }
       return finish(std::move(*lanes), current, markers, std::move(fusion), vehicle);
     }
     no_lines = std::get<Status>(found);

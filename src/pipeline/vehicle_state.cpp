@@ -9,6 +9,7 @@ namespace relative_map::core {
 
 namespace {
 
+constexpr double kJump = 5.0;                                       // [m] that no speed has to explain
 constexpr Time kKept = std::chrono::seconds(3);                     // of poses
 constexpr Time kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
 constexpr Time kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
@@ -93,8 +94,15 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
   return state;
 }
 
+bool has_jumped(const VehicleState& before, const VehicleState& after) {
+  const double moved = (after.map_from_base.position() - before.map_from_base.position()).norm();
+  const double seconds = std::abs(to_seconds(after.stamp - before.stamp));
+  return moved > kJump + 1.5 * seconds * std::max(std::abs(before.speed), std::abs(after.speed));
+}
+
 void PoseBuffer::add(const VehicleState& state) {
   while (!states_.empty() && states_.back().stamp >= state.stamp) states_.pop_back();
+  if (!states_.empty() && has_jumped(states_.back(), state)) states_.clear();
   states_.push_back(state);
   if (!std::isfinite(state.yaw_rate)) states_.back().yaw_rate = turn_rate_up_to(state);
   while (states_.front().stamp < state.stamp - kKept) states_.pop_front();

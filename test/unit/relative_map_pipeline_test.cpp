@@ -185,15 +185,20 @@ TEST(Pipeline, KeepsLanesApartThatTheMarkersPushTogether) {
   EXPECT_TRUE(scene.remarked("'left' is left out"));
 }
 
-TEST(Pipeline, OrdersLanesAnewThatTheMarkersMovePastEachOther) {
+TEST(Pipeline, DoesWithoutMarkersThatAreAnotherLanes) {
+  // Just across the line between two lanes: the camera sees the new lane, the current one is the old one yet.
   PipelineConfig config;
   config.navigation_lane.lane_marker_weight = 1.0;
   Scene scene(three_straight_lines(), config);
-  scene.see(lane_about({7.0}));
-  const RelativeMap map = scene.at(Pose2(Point2(100.0, 0.0), 0.0));
-  for (std::size_t i = 1; i < map.lanes.size(); ++i) {
-    EXPECT_GT(map.lanes[i - 1].path[10].position.y(), map.lanes[i].path[10].position.y());
-  }
+  scene.at(Pose2(Point2(99.0, 1.6), 0.0));
+  scene.see(lane_about({1.65}));
+  const RelativeMap map = scene.at(Pose2(Point2(100.0, 1.85), 0.0));
+  EXPECT_EQ(map.current_lane_id, "middle");
+  EXPECT_EQ(map.fusion.source, Source::kNavigationLine);
+  EXPECT_EQ(map.fusion.marker_age, -1.0);
+  EXPECT_NEAR(map.lanes[1].path[20].position.y(), -1.85, 1e-9);
+  EXPECT_EQ(map.lanes[1].left_boundary.paint.size(), 1u) << "and no paint is put where it is not";
+  EXPECT_TRUE(scene.remarked("lane markers: they are another lane's: line 'middle' is 3.5 m from them"));
 }
 
 TEST(Pipeline, DrivesRoundALapForEver) {

@@ -185,8 +185,8 @@ TEST(PoseBuffer, KnowsNothingAtFirst) {
 
 TEST(PoseBuffer, InterpolatesBetweenPoses) {
   PoseBuffer buffer;
-  buffer.add(vehicle_at(Pose2(Point2(0.0, 0.0), kPi - 0.1), 1.0));
-  buffer.add(vehicle_at(Pose2(Point2(4.0, 8.0), -kPi + 0.1), 1.1));
+  buffer.add(vehicle_at(Pose2(Point2(0.0, 0.0), kPi - 0.1), 1.0, 90.0));
+  buffer.add(vehicle_at(Pose2(Point2(4.0, 8.0), -kPi + 0.1), 1.1, 90.0));
   const std::optional<Pose2> between = buffer.at(from_seconds(1.025));
   ASSERT_TRUE(between);
   EXPECT_NEAR((between->position() - Point2(1.0, 2.0)).norm(), 0.0, 1e-9);
@@ -244,6 +244,15 @@ TEST(PoseBuffer, ForgetsTheFutureWhereTimeIsSetBack) {
   buffer.add(vehicle_at(Pose2(Point2(-1.0, 0.0), 0.0), 5.25, 0.0));
   EXPECT_FALSE(buffer.at(from_seconds(5.8)));
   EXPECT_EQ(buffer.at(from_seconds(5.25))->position().x(), -1.0);
+}
+
+TEST(PoseBuffer, ForgetsWhereItWasBeforeAJump) {
+  PoseBuffer buffer;
+  buffer.add(vehicle_at(Pose2(Point2(0.0, 0.0), 0.0), 1.0, 10.0));
+  buffer.add(vehicle_at(Pose2(Point2(30.0, 0.0), 0.0), 1.1, 10.0));
+  EXPECT_NEAR(buffer.at(from_seconds(1.05))->position().x(), 29.5, 1e-9) << "not half way between";
+  buffer.add(vehicle_at(Pose2(Point2(34.0, 0.0), 0.0), 1.2, 10.0));
+  EXPECT_NEAR(buffer.at(from_seconds(1.15))->position().x(), 32.0, 1e-9) << "3 m more than driven is no jump";
 }
 
 TEST(PoseBuffer, KeepsAFewSecondsOnly) {

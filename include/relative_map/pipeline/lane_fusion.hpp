@@ -1,9 +1,16 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "relative_map/model/map.hpp"
 #include "relative_map/pipeline/lane_marker_path.hpp"
 
 namespace relative_map::core {
+
+/// Ends the trust in markers where they part from the lane: from there on they are another lane's.
+/// If that is so beside the vehicle already, they are of no use at all, and a sentence says so.
+std::optional<std::string> trust_within_lane(const LanePath& lane, MarkerPath& markers);
 
 /// Pulls the current lane towards the markers by a fixed weight [0, 1] and returns what was applied.
 /// Both are aligned by arc length from the vehicle. Behind the first paint the correction settles to what it

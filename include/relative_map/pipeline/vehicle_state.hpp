@@ -28,10 +28,14 @@ Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& li
 std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
                                                       const std::optional<Chassis>& chassis);
 
+/// Whether the vehicle has moved by more than its speed explains: it was put elsewhere.
+bool has_jumped(const VehicleState& before, const VehicleState& after);
+
 /// The latest poses, to look up where the vehicle was when an image was taken.
 class PoseBuffer {
  public:
   /// A stamp at or before the newest one's replaces what came after it: time has been set back.
+  /// After a jump the poses before it are forgotten: what was seen from them lies elsewhere now.
   /// A yaw rate that is not given comes from the headings of the poses before.
   void add(const VehicleState& state);
   /// Interpolated between poses, carried on by speed and yaw rate a little beyond them; none further out.
