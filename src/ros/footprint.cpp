@@ -19,16 +19,18 @@ Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
   return transform;
 }
 
-/// Half extents of the box around a primitive in its own frame; zero for meshes, which are not read.
-Eigen::Vector3d half_extents(const urdf::Geometry& geometry) {
+/// Half extents along the base's axes of a primitive that is turned so; zero for meshes, which are not read.
+Eigen::Vector3d reach(const urdf::Geometry& geometry, const Eigen::Matrix3d& base_from_shape) {
   switch (geometry.type) {
     case urdf::Geometry::BOX: {
       const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
-      return 0.5 * Eigen::Vector3d(size.x, size.y, size.z);
+      return 0.5 * base_from_shape.cwiseAbs() * Eigen::Vector3d(size.x, size.y, size.z);
     }
     case urdf::Geometry::CYLINDER: {
       const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-      return {cylinder.radius, cylinder.radius, 0.5 * cylinder.length};
+      const Eigen::Array3d axis = base_from_shape.col(2).array().abs();
+      // The ends are discs: along their axis they have no extent, square to it that of their radius.
+      return 0.5 * cylinder.length * axis + cylinder.radius * (1.0 - axis.square()).max(0.0).sqrt();
     }
     case urdf::Geometry::SPHERE:
       return Eigen::Vector3d::Constant(static_cast<const urdf::Sphere&>(geometry).radius);
@@ -40,12 +42,11 @@ Eigen::Vector3d half_extents(const urdf::Geometry& geometry) {
 void extend(Eigen::AlignedBox3d& box, const urdf::Link& link, const Eigen::Isometry3d& base_from_link) {
   for (const auto& collision : link.collision_array) {
     if (!collision || !collision->geometry) continue;
-    const Eigen::Vector3d half = half_extents(*collision->geometry);
-    if (half.isZero()) continue;
     const Eigen::Isometry3d base_from_shape = base_from_link * to_eigen(collision->origin);
-    const Eigen::Vector3d reach = base_from_shape.rotation().cwiseAbs() * half;
-    box.extend(base_from_shape.translation() - reach);
-    box.extend(base_from_shape.translation() + reach);
+    const Eigen::Vector3d half = reach(*collision->geometry, base_from_shape.rotation());
+    if (half.isZero()) continue;
+    box.extend(base_from_shape.translation() - half);
+    box.extend(base_from_shape.translation() + half);
   }
   for (const auto& child : link.child_links) {
     if (child->parent_joint->type != urdf::Joint::FIXED) continue;
