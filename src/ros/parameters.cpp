@@ -192,7 +192,11 @@ ParameterSet read_yaml(const std::string& file) {
   ParameterSet set;
   try {
     const YAML::Node tree = YAML::LoadFile(file);
-    if (tree.IsDefined() && !tree.IsNull()) flatten_into(set, "", tree);
+    if (tree.IsMap()) {
+      flatten_into(set, "", tree);
+    } else if (tree.IsDefined() && !tree.IsNull()) {
+      throw std::runtime_error(file + ": is no map of parameters");
+    }
   } catch (const YAML::Exception& fault) {
     throw std::runtime_error(file + ": " + fault.what());
   }
