@@ -1,5 +1,7 @@
 #include "relative_map/ros/map_engine.hpp"
 
+#include <cmath>
+
 #include "relative_map/pipeline/map_check.hpp"
 
 namespace relative_map {
@@ -49,13 +51,14 @@ void MapEngine::set_config(const core::PipelineConfig& config) {
 
 void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, const ros::Time& received) {
   localization_ = message;
+  const core::Localization localization = to_core(*message, convention_, received);
+  newest_pose_ = localization.stamp;
   const std::string link = link_of(message->child_frame_id, config_->base_frame);
   const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_->base_frame);
   localization_has_transform_ = link_from_base.has_value();
   if (!link_from_base) return;
   const bool is_base = link == config_->base_frame;
-  pipeline_.set_localization(to_core(*message, convention_, received),
-                             is_base ? std::nullopt : link_from_base);
+  pipeline_.set_localization(localization, is_base ? std::nullopt : link_from_base);
 }
 
 void MapEngine::on_chassis(const ChassisConstPtr& message, const ros::Time& received) {
@@ -75,8 +78,12 @@ void MapEngine::on_lane_markers(const LaneMarkersConstPtr& message, const ros::T
   pipeline_.set_lane_markers(to_core(*message, planar(*base_from_sensor), received));
 }
 
-std::optional<core::Status> MapEngine::frame_fault() const {
+std::optional<core::Status> MapEngine::localization_fault(const ros::Time& now) const {
   if (!localization_) return std::nullopt;
+  if (*newest_pose_ > to_core(now) + core::from_seconds(config_->max_age.localization)) {
+    return core::Status{core::StatusCode::kInvalidLocalization,
+                        "localization: header.stamp is ahead of the clock"};
+  }
   if (!localization_has_transform_) {
     return core::Status{core::StatusCode::kNoTransform, "no transform from localization's child_frame_id '" +
                                                             localization_->child_frame_id + "' to '" +
@@ -90,26 +97,30 @@ std::optional<core::Status> MapEngine::frame_fault() const {
   return std::nullopt;
 }
 
-bool MapEngine::already_mapped(const ros::Time& now) const {
-  const std::optional<core::Time> pose = pipeline_.pose_stamp();
-  if (!pose || !mapped_pose_ || *pose != *mapped_pose_) return false;
-  return core::to_seconds(to_core(now) - *pose) <= config_->max_age.localization;
+bool MapEngine::pose_is_of_now(const ros::Time& now) const {
+  return newest_pose_ &&
+         std::abs(core::to_seconds(to_core(now) - *newest_pose_)) <= config_->max_age.localization;
 }
 
 MapMsgPtr MapEngine::tick(const ros::Time& now) {
   if (now < last_tick_) reset();
   last_tick_ = now;
-  if (already_mapped(now)) return nullptr;
-  mapped_pose_ = pipeline_.pose_stamp();
+  const bool of_now = pose_is_of_now(now);
+  if (of_now && mapped_pose_ == newest_pose_) return nullptr;
+  mapped_pose_ = newest_pose_;
 
-  const std::optional<core::Status> fault = frame_fault();
-  core::RelativeMap built =
-      fault ? pipeline_.empty_map(*fault, mapped_pose_.value_or(to_core(now))) : pipeline_.tick(to_core(now));
+  const std::optional<core::Status> fault = localization_fault(now);
+  core::RelativeMap built = fault ? pipeline_.empty_map(*fault, of_now ? *newest_pose_ : to_core(now))
+                                  : pipeline_.tick(to_core(now));
   map_ = core::checked(std::move(built), {config_->base_frame, published_sequence_num_});
   published_sequence_num_ = map_.sequence_num;
   remarks_ = fault ? std::vector<std::string>() : pipeline_.remarks();
   if (!marker_fault_.empty()) remarks_.push_back(marker_fault_);
-  if (map_.status.code == core::StatusCode::kOk) map_.status.message = joined(remarks_);
+  if (map_.status.code == core::StatusCode::kOk) {
+    map_.status.message = joined(remarks_);
+  } else if (!marker_fault_.empty()) {
+    map_.status.message += "; " + marker_fault_;
+  }
   const MapMsgPtr message = to_message(map_);
   if (markers_) message->lane_marker = *markers_;
   if (localization_) message->localization = *localization_;
@@ -122,6 +133,7 @@ void MapEngine::reset() {
   markers_.reset();
   localization_has_transform_ = true;
   marker_fault_.clear();
+  newest_pose_.reset();
   mapped_pose_.reset();
 }
 

@@ -13,7 +13,7 @@ namespace relative_map::test {
 /// A map engine with static transforms of its own.
 class Engine {
  public:
-  explicit Engine(const NodeConfig& config = {}) : engine_(config, link_transforms(transforms_)) {}
+  explicit Engine(const NodeConfig& config = NodeConfig()) : engine_(config, link_transforms(transforms_)) {}
 
   MapEngine* operator->() { return &engine_; }
 

@@ -113,6 +113,28 @@ TEST_F(MapEngineOnItsWay, EmptiesTheMapWhenThePoseIsStaleAndGoesOnSayingSo) {
   EXPECT_EQ(engine->tick(after(0.9))->status.code, MapStatus::OK);
 }
 
+TEST_F(MapEngineOnItsWay, EmptiesTheMapWhenAPoseIsOfTheFutureAndGoesOnSayingSo) {
+  engine.drive_to(kOnMiddleLane, after(3600.0));
+  for (const double seconds : {0.1, 0.2, 0.3}) {
+    const MapMsgPtr map = engine->tick(after(seconds));
+    ASSERT_NE(map, nullptr) << seconds;
+    EXPECT_EQ(map->status.code, MapStatus::INVALID_LOCALIZATION);
+    EXPECT_THAT(map->status.message, HasSubstr("ahead of the clock"));
+    EXPECT_EQ(map->header.stamp, after(seconds));
+    EXPECT_THAT(map->hdmap.lane, IsEmpty());
+  }
+  engine.drive_to(kOnMiddleLane, after(0.4));
+  EXPECT_EQ(engine->tick(after(0.4))->status.code, MapStatus::OK);
+}
+
+TEST_F(MapEngineOnItsWay, PutsUpWithAClockThatIsALittleBehind) {
+  engine.drive_to(kOnMiddleLane, after(0.2));
+  const MapMsgPtr map = engine->tick(after(0.1));
+  EXPECT_EQ(map->status.code, MapStatus::OK);
+  EXPECT_EQ(map->header.stamp, after(0.2));
+  EXPECT_EQ(engine->tick(after(0.15)), nullptr);
+}
+
 TEST_F(MapEngineOnItsWay, EmptiesTheMapWhenAPoseIsNotFinite) {
   LocalizationEstimate bad = localization(kOnMiddleLane, after(0.1));
   bad.pose.position.y = kNaN;

@@ -20,7 +20,7 @@ struct BuiltAndSent {
   MapMsgPtr sent;
 };
 
-BuiltAndSent map_on_three_lanes(const core::PipelineConfig& config = {}) {
+BuiltAndSent map_on_three_lanes(const core::PipelineConfig& config = core::PipelineConfig()) {
   const Pose2 start(Point2(1000.0, 2000.0), 0.6);
   NodeConfig node;
   node.pipeline = config;

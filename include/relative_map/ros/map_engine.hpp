@@ -46,8 +46,10 @@ class MapEngine {
   const core::PipelineConfig& config() const { return *config_; }
 
  private:
-  std::optional<core::Status> frame_fault() const;
-  bool already_mapped(const ros::Time& now) const;
+  /// What the pipeline can't know of: clock, transforms, the name of the map frame.
+  std::optional<core::Status> localization_fault(const ros::Time& now) const;
+  /// Neither stale nor of the future.
+  bool pose_is_of_now(const ros::Time& now) const;
 
   std::shared_ptr<const core::PipelineConfig> config_;
   OrientationConvention convention_;
@@ -59,7 +61,7 @@ class MapEngine {
   bool localization_has_transform_ = true;
   std::string marker_fault_;
   ros::Time last_tick_;
-  std::optional<core::Time> mapped_pose_;
+  std::optional<core::Time> newest_pose_, mapped_pose_;  ///< stamps, where a transform is missing too
   std::optional<std::uint32_t> published_sequence_num_;
   core::RelativeMap map_;
   std::vector<std::string> remarks_;
