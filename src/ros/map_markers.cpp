@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "relative_map/ros/conversions.hpp"
+
 namespace relative_map {
 
 namespace {
@@ -154,7 +156,9 @@ void draw_lane_marker(const MapMsg& map, const LaneMarker& seen, int id, std::ve
   const double length = seen.view_range - seen.longitude_start;
   if (!(seen.quality > 0.0) || !(length > 0.0 && length < 500.0)) return;
   Marker marker = make_marker(map, "lane_markers", id, Marker::LINE_STRIP);
-  if (!map.lane_marker.header.frame_id.empty()) marker.header.frame_id = map.lane_marker.header.frame_id;
+  const std_msgs::Header& image = map.lane_marker.header;
+  if (!image.frame_id.empty()) marker.header.frame_id = frame_name(image.frame_id);
+  if (!image.stamp.isZero()) marker.header.stamp = image.stamp;
   marker.scale.x = 0.10;
   marker.color = kOrange();
   for (double x = seen.longitude_start; x <= seen.view_range; x += kDrawStep) {
@@ -237,8 +241,11 @@ visualization_msgs::MarkerArray MapMarkers::draw(const MapMsg& map, const core::
     draw_boundary(map, lane.left_boundary, boundaries);
     if (lane.id == map.current_lane_id) array.markers.push_back(draw_centerline(map, lane));
   }
-  draw_lane_marker(map, map.lane_marker.left_lane_marker, 0, seen);
-  draw_lane_marker(map, map.lane_marker.right_lane_marker, 1, seen);
+  // In an empty map it may be of any age.
+  if (!map.hdmap.lane.empty()) {
+    draw_lane_marker(map, map.lane_marker.left_lane_marker, 0, seen);
+    draw_lane_marker(map, map.lane_marker.right_lane_marker, 1, seen);
+  }
   array.markers.insert(array.markers.end(), boundaries.begin(), boundaries.end());
   array.markers.insert(array.markers.end(), seen.begin(), seen.end());
   array.markers.push_back(draw_footprint(map, footprint));
