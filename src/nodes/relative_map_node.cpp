@@ -5,8 +5,10 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "relative_map");
+  // With the last of its handles a node's log ends: these outlive the catch.
+  const ros::NodeHandle nh, private_nh("~");
   try {
-    relative_map::RelativeMapNode node{ros::NodeHandle(), ros::NodeHandle("~")};
+    relative_map::RelativeMapNode node(nh, private_nh);
     ros::spin();
   } catch (const std::exception& fault) {
     ROS_FATAL_STREAM(fault.what());
