@@ -50,7 +50,7 @@ std::vector<std::string> PipelineConfig::validate() const {
   Faults faults;
   faults.range("map_param/default_left_width", map_param.default_left_width, 0.5, 10.0);
   faults.range("map_param/default_right_width", map_param.default_right_width, 0.5, 10.0);
-  faults.positive("map_param/default_speed_limit", map_param.default_speed_limit);
+  faults.range("map_param/default_speed_limit", map_param.default_speed_limit, 0.1, 100.0);
 
   const NavigationLaneParam& lane = navigation_lane;
   faults.range("navigation_lane/max_len_from_navigation_line", lane.max_len_from_navigation_line, 1.0, 1e5);
