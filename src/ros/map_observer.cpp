@@ -62,7 +62,8 @@ MapStatistics MapObserver::statistics(const ros::Time& now, const ros::WallTime&
                       [&](const ros::WallTime& arrival) { return arrival >= wall_now - kRateWindow; });
     const double watched = std::min(kRateWindow.toSec(), (wall_now - input.arrivals.front()).toSec());
     const double rate = watched > 0.0 ? static_cast<double>(recent) / watched : 0.0;
-    result.inputs[topic] = {rate, (now - input.stamp).toSec()};
+    // As numbers: a difference of times throws where it is more than 68 years, as of a stamp that is scrap.
+    result.inputs[topic] = {rate, now.toSec() - input.stamp.toSec()};
   }
   return result;
 }
