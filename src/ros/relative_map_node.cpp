@@ -8,11 +8,13 @@ namespace {
 
 constexpr std::size_t kMaxLogged = 10;  // lines, and faults, of one message
 
-NodeConfig load_config(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
+NodeConfig load_config(const ros::NodeHandle& private_nh) {
   XmlRpc::XmlRpcValue tree;
   private_nh.getParam(private_nh.getNamespace(), tree);
-  std::string urdf;
-  nh.getParam("robot_description", urdf);
+  // Like other users of it: in the node's namespace, or else in one around it.
+  // From the private one, since a nodelet's public handle can't search from the root.
+  std::string key, urdf;
+  if (private_nh.searchParam("robot_description", key)) private_nh.getParam(key, urdf);
   return make_node_config(flatten(tree), urdf);
 }
 
@@ -58,7 +60,7 @@ void log_intake(const core::NavigationLines& lines) {
 RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(nh),
       private_nh_(private_nh),
-      config_(load_config(nh, private_nh)),
+      config_(load_config(private_nh)),
       transform_listener_(transforms_),
       engine_(config_, link_transforms(transforms_)),
       intake_config_(config_.pipeline),
