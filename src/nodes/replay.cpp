@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -48,7 +49,7 @@ Arguments parse(const std::vector<std::string>& words) {
       if (i + 1 == words.size()) throw UsageError(words[i] + " needs a file");
       (words[i] == "--config" ? arguments.config : arguments.urdf) = words[i + 1];
       ++i;
-    } else if (words[i].rfind("--", 0) == 0) {
+    } else if (words[i].size() > 1 && words[i].front() == '-') {
       throw UsageError("unknown option " + words[i]);
     } else {
       files.push_back(words[i]);
@@ -57,14 +58,18 @@ Arguments parse(const std::vector<std::string>& words) {
   if (files.size() != 2) throw UsageError("two bags are needed: IN.bag and OUT.bag");
   arguments.input = files[0];
   arguments.output = files[1];
-  if (arguments.input == arguments.output) throw UsageError("IN.bag and OUT.bag are the same file");
+  std::error_code not_there;
+  if (arguments.input == arguments.output ||
+      std::filesystem::equivalent(arguments.input, arguments.output, not_there)) {
+    throw UsageError("IN.bag and OUT.bag are the same file");
+  }
   return arguments;
 }
 
 std::string read_file(const std::string& file) {
   std::ifstream stream(file);
   std::stringstream text;
-  if (!stream || !(text << stream.rdbuf())) throw std::runtime_error(file + ": can't be read");
+  if (!stream || !(text << stream.rdbuf())) throw std::runtime_error(file + ": can't be read, or is empty");
   return text.str();
 }
 
@@ -119,7 +124,7 @@ class Replay {
     });
     if (view.size() == 0) {
       throw std::runtime_error(
-          "the bag has none of the topics /navigation, /localization, /chassis, /perception/lane_markers");
+          "it has none of the topics /navigation, /localization, /chassis, /perception/lane_markers");
     }
     const ros::Time start = view.getBeginTime();
     ProgressBar progress((view.getEndTime() - start).toSec());
@@ -206,8 +211,13 @@ void run(const Arguments& arguments) {
   }
   Replay replay(config, input, output);
   const auto start = std::chrono::steady_clock::now();
-  replay.run();
-  output.close();
+  try {
+    replay.run();
+    output.close();
+  } catch (const std::exception& fault) {
+    throw std::runtime_error(arguments.input + ": can't be replayed to " + arguments.output + ": " +
+                             fault.what());
+  }
   part.keep();
   replay.print_summary(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }

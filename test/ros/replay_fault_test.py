@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""What replay does with what it can't replay: it says so in one line, and leaves all files as they were."""
+
+import os
+
+import rostest
+from std_msgs.msg import String
+
+from replay_support import START, ReplayTest, Run
+
+
+class ReplayFaults(ReplayTest):
+    def files(self):
+        contents = {}
+        for name in os.listdir(self.folder):
+            if os.path.isfile(self.path(name)):
+                with open(self.path(name), 'rb') as file:
+                    contents[name] = file.read()
+        return contents
+
+    def expect_fault(self, *texts, words=('in.bag', 'out.bag'), code=1, lines=1):
+        """Fails with one line that has these texts, with an old out.bag and without one."""
+        for old_output in (True, False):
+            if old_output:
+                self.write('out.bag', 'precious')
+            elif os.path.exists(self.path('out.bag')):
+                os.remove(self.path('out.bag'))
+            before = self.files()
+            run = Run(list(words), self.folder)
+            self.assertEqual(run.code, code, run.errors)
+            self.assertEqual(self.files(), before)
+            self.assertEqual(run.output, '')
+            self.assertEqual(run.errors.count('\n'), lines, run.errors)
+            for text in ('replay: ',) + texts:
+                self.assertIn(text, run.errors)
+
+    def expect_usage_fault(self, text, *words):
+        run = Run(list(words), self.folder)
+        self.assertEqual(run.code, 2)
+        self.assertEqual(run.errors.splitlines()[0], 'replay: ' + text)
+        self.assertIn('usage: ', run.errors)
+
+    def truncate(self, share):
+        with open(self.path('in.bag'), 'r+b') as file:
+            file.truncate(int(os.path.getsize(self.path('in.bag')) * share))
+
+    def test_no_bag_at_the_place(self):
+        self.expect_fault('in.bag')
+
+    def test_a_folder(self):
+        os.mkdir(self.path('in.bag'))
+        self.expect_fault('in.bag')
+
+    def test_an_empty_file(self):
+        self.write('in.bag', '')
+        self.expect_fault('in.bag', 'not a readable bag')
+
+    def test_what_is_no_bag(self):
+        self.write('in.bag', 'This is a text.\n' * 1000)
+        self.expect_fault('in.bag', 'not a readable bag')
+
+    def test_an_empty_bag(self):
+        self.record(entries=[])
+        self.expect_fault('in.bag', 'none of the topics')
+
+    def test_a_bag_without_inputs(self):
+        self.record(entries=[('/chatter', String('hello'), START)])
+        self.expect_fault('in.bag', '/navigation, /localization, /chassis, /perception/lane_markers')
+
+    def test_a_truncated_bag(self):
+        for share in (0.0001, 0.1, 0.5, 0.9, 0.999):
+            self.record()
+            self.truncate(share)
+            self.expect_fault('in.bag', 'not a readable bag')
+
+    def test_a_bag_with_a_damaged_chunk(self):
+        self.record(compression='bz2')
+        with open(self.path('in.bag'), 'r+b') as file:
+            file.seek(6000)  # 4 kB of header, then the chunk
+            file.write(b'\xff' * 64)
+        self.expect_fault('in.bag')
+
+    def test_an_output_that_cannot_be_written(self):
+        self.record()
+        self.write('file', '')
+        os.mkdir(self.path('folder'))
+        for target in ('no_folder/maps.bag', 'file/maps.bag', 'folder'):
+            self.expect_fault(target, "can't be written", words=('in.bag', target))
+
+    def test_an_output_that_is_the_input(self):
+        self.record()
+        os.symlink('in.bag', self.path('link.bag'))
+        os.link(self.path('in.bag'), self.path('hard_link.bag'))
+        before = self.files()
+        for target in ('in.bag', './in.bag', self.path('in.bag'), 'link.bag', 'hard_link.bag'):
+            self.expect_usage_fault('IN.bag and OUT.bag are the same file', 'in.bag', target)
+        self.assertEqual(self.files(), before)
+
+    def test_words_that_make_no_sense(self):
+        self.record()
+        before = self.files()
+        self.expect_usage_fault('two bags are needed: IN.bag and OUT.bag')
+        self.expect_usage_fault('two bags are needed: IN.bag and OUT.bag', 'in.bag')
+        self.expect_usage_fault('two bags are needed: IN.bag and OUT.bag', 'in.bag', 'out.bag', 'more.bag')
+        self.expect_usage_fault('unknown option --rate', 'in.bag', 'out.bag', '--rate', '20')
+        self.expect_usage_fault('unknown option -c', 'in.bag', 'out.bag', '-c', 'config.yaml')
+        self.expect_usage_fault('--config needs a file', 'in.bag', 'out.bag', '--config')
+        self.expect_usage_fault('--urdf needs a file', 'in.bag', 'out.bag', '--urdf')
+        self.assertEqual(self.files(), before)
+
+    def test_a_configuration_that_cannot_be_read(self):
+        self.record()
+        words = ('in.bag', 'out.bag', '--config', 'config.yaml')
+        self.expect_fault('config.yaml', words=words)
+        self.write('config.yaml', 'rate: [10\n')
+        self.expect_fault('config.yaml', words=words)
+        self.write('config.yaml', '- rate\n')
+        self.expect_fault('config.yaml', words=words)
+
+    def test_a_bad_configuration_is_refused_with_all_its_faults(self):
+        self.record()
+        self.write('config.yaml', 'rate: 0\nratte: 20\nmap_param: {default_left_width: wide}\n')
+        self.expect_fault("rate is 0", 'ratte is not a parameter', "map_param/default_left_width is 'wide'",
+                          words=('in.bag', 'out.bag', '--config', 'config.yaml'), lines=4)
+
+    def test_a_bad_urdf(self):
+        self.record()
+        words = ('in.bag', 'out.bag', '--urdf', 'car.urdf')
+        self.expect_fault('car.urdf', "can't be read", words=words)
+        self.write('car.urdf', '')
+        self.expect_fault('car.urdf', words=words)
+        self.write('car.urdf', '<robot name="car"><link name="wheel"/></robot>')
+        self.expect_fault("no link 'base_link'", words=words, lines=2)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('relative_map', 'replay_faults', ReplayFaults)

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""What replay makes of a drive: the maps of the node, at fixed times, the same ones each time."""
+
+import filecmp
+
+import rospy
+import rostest
+from relative_map.msg import FusionState, MapStatus
+from std_msgs.msg import String
+
+import vehicle_messages as messages
+from replay_support import CAMERA, START, TICKS, ReplayTest, drive, tick_times, transforms
+
+WIDE_TRUCK = """<robot name="truck"><link name="base_link"><collision><origin xyz="3 0 1"/>
+<geometry><box size="8 3.6 2"/></geometry></collision></link></robot>"""
+
+
+class Replay(ReplayTest):
+    def test_maps_of_a_drive(self):
+        self.record()
+        run = self.replay()
+        maps = self.maps()
+        self.assertEqual(list(maps), tick_times())
+        for time, head in maps.items():
+            # A localization every 10 ms: the newest one is the tick's own.
+            self.assertEqual((head.stamp, head.frame_id, head.code), (time, 'base_link', MapStatus.OK))
+        for map in (maps[START].whole(), head.whole()):
+            self.assertEqual(len(map.hdmap.lane), 3)
+            self.assertEqual(map.fusion.source, FusionState.FUSED)
+            self.assertAlmostEqual(map.fusion.lateral_offset, 0.1 * 0.2, delta=1e-6)
+        self.expect_contract()
+        self.assertIn('16 maps, 0 of them empty', run.output)
+        self.assertEqual(run.errors, '')
+
+    def test_two_runs_write_the_same_bytes(self):
+        self.record()
+        self.replay('in.bag', 'one.bag')
+        self.replay('in.bag', 'two.bag')
+        self.assertTrue(filecmp.cmp(self.path('one.bag'), self.path('two.bag'), shallow=False))
+
+    def test_the_order_in_the_file_does_not_matter(self):
+        entries = list(drive())
+        middle = next(i for i, entry in enumerate(entries) if entry[2] > START + rospy.Duration(1))
+        self.record('in.bag', entries)
+        self.record('other.bag', entries[middle:] + entries[:middle], compression='bz2')
+        self.replay('in.bag', 'one.bag')
+        self.replay('other.bag', 'two.bag')
+        self.assertTrue(filecmp.cmp(self.path('one.bag'), self.path('two.bag'), shallow=False))
+
+    def test_ticks_start_with_the_first_message(self):
+        late = START + rospy.Duration(1, 234)
+        self.record(entries=[(topic, message, time) for topic, message, time in drive()
+                             if topic == '/navigation' or time > late])
+        self.replay()
+        maps = self.maps()
+        self.assertEqual(list(maps), tick_times())
+        self.assertEqual([head.code for head in maps.values()], [MapStatus.NO_LOCALIZATION] * 11 + [MapStatus.OK] * 5)
+
+    def test_markers_of_a_camera_need_its_transform(self):
+        self.record(entries=drive('camera_link'))
+        self.replay()
+        for head in self.maps().values():
+            self.assertEqual(head.code, MapStatus.OK)
+            self.assertIn('camera_link', head.text)
+        self.assertEqual(head.whole().fusion.source, FusionState.NAVIGATION_LINE)
+        # A static transform holds from the beginning, whenever it was recorded.
+        self.record(entries=list(drive('camera_link')) + [transforms(CAMERA)])
+        self.replay()
+        for head in self.maps().values():
+            self.assertNotIn('camera_link', head.text)
+        self.assertEqual(self.maps()[START].whole().fusion.source, FusionState.FUSED)
+
+    def test_the_configuration_is_used(self):
+        self.record()
+        self.write('config.yaml', 'rate: 20\nmap_param: {default_speed_limit: 13.0}\n')
+        self.replay('in.bag', 'out.bag', '--config', 'config.yaml')
+        maps = self.maps()
+        self.assertEqual(list(maps), tick_times(2 * TICKS - 1, 20))
+        self.assertEqual([lane.speed_limit for lane in maps[START].whole().hdmap.lane], [13.0] * 3)
+
+    def test_the_urdf_is_used(self):
+        self.record()
+        self.write('truck.urdf', WIDE_TRUCK)
+        self.replay('--urdf', 'truck.urdf', 'in.bag', 'out.bag')
+        map = self.maps()[START].whole()  # 3.6 m of truck do not fit between lines that are 3.5 m apart
+        self.assertEqual(map.status.code, MapStatus.OK)
+        self.assertIn(len(map.hdmap.lane), (1, 2))
+
+    def test_messages_of_another_type_are_named_once_and_passed_over(self):
+        entries = [entry for entry in drive() if entry[0] != '/chassis']
+        self.record(entries=entries + [('/chassis', String('fast'), START + rospy.Duration(1))] * 3)
+        run = self.replay()
+        self.assertEqual(run.errors.count('/chassis has type std_msgs/String'), 1)
+        self.assertEqual({head.code for head in self.maps().values()}, {MapStatus.OK})
+
+    def test_lines_of_no_use_are_named(self):
+        entries = [entry for entry in drive() if entry[0] != '/navigation']
+        short = messages.navigation(messages.navigation_path('short', 0, [(0.0, 0.0)]))
+        self.record(entries=entries + [('/navigation', short, START)])
+        self.assertIn('short', self.replay().errors)
+
+    def test_an_existing_output_is_replaced(self):
+        self.record()
+        self.write('out.bag', 'old')
+        self.replay()
+        self.assertEqual(list(self.maps()), tick_times())
+
+    def test_help(self):
+        run = self.replay('--help')
+        self.assertIn('usage: rosrun relative_map replay IN.bag OUT.bag [--config FILE] [--urdf FILE]', run.output)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('relative_map', 'replay', Replay)
