@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Every launch file loads, with what it needs in place, and its arguments do what they say."""
+
+import glob
+import os
+import tempfile
+import unittest
+
+import catkin_pkg.package
+import roslaunch.config
+import roslib.packages
+import rospkg
+import rostest
+import yaml
+
+PACKAGE = rospkg.RosPack().get_path('relative_map')
+NEEDED_ARGUMENTS = {'demo.launch': ['navigation_lines:=a.smoothed b.smoothed']}
+
+
+def load(name, *arguments):
+    path = os.path.join(PACKAGE, 'launch', name)
+    return roslaunch.config.load_config_default([(path, list(arguments))], None)
+
+
+def node(config, name):
+    return next((node for node in config.nodes if node.name == name), None)
+
+
+def command(node):
+    return (node.package, node.type) + tuple(node.args.split())
+
+
+class LaunchFiles(unittest.TestCase):
+    def test_each_loads_and_finds_its_packages_and_programs(self):
+        files = sorted(glob.glob(os.path.join(PACKAGE, 'launch', '*.launch')))
+        self.assertGreaterEqual(len(files), 3)
+        rospack = rospkg.RosPack()
+        manifest = catkin_pkg.package.parse_package(PACKAGE)
+        dependencies = [dependency.name for dependency in manifest.exec_depends] + ['relative_map']
+        for name in map(os.path.basename, files):
+            config = load(name, 'nodelet:=false') if name == 'relative_map.launch' else load(
+                name, *NEEDED_ARGUMENTS.get(name, []))
+            self.assertEqual(config.config_errors, [], name)
+            self.assertGreater(len(config.nodes), 0, name)
+            for node in config.nodes:
+                self.assertIn(node.package, dependencies, name)
+                # rviz is for people; the machines that run tests may be without it.
+                if node.package != 'rviz' or 'rviz' in rospack.list():
+                    self.assertTrue(roslib.packages.find_node(node.package, node.type), node.type)
+
+    def test_the_parameters_of_the_map_are_those_of_the_shipped_file(self):
+        with open(os.path.join(PACKAGE, 'config', 'relative_map.yaml')) as file:
+            shipped = yaml.safe_load(file)
+        params = load('relative_map.launch').params
+        for key, value in shipped.items():
+            if isinstance(value, dict):
+                for leaf, number in value.items():
+                    self.assertEqual(params['/relative_map/%s/%s' % (key, leaf)].value, number)
+            else:
+                self.assertEqual(params['/relative_map/' + key].value, value)
+
+    def test_the_map_is_a_nodelet_in_a_manager_of_its_own(self):
+        config = load('relative_map.launch')
+        self.assertEqual(command(node(config, 'relative_map')),
+                         ('nodelet', 'nodelet', 'load', 'relative_map/RelativeMapNodelet', 'relative_map_manager'))
+        self.assertEqual(command(node(config, 'relative_map_manager')), ('nodelet', 'nodelet', 'manager'))
+        self.assertEqual(len(config.nodes), 2)
+
+    def test_manager_names_a_running_one(self):
+        config = load('relative_map.launch', 'manager:=/car/manager')
+        self.assertEqual([command(node) for node in config.nodes],
+                         [('nodelet', 'nodelet', 'load', 'relative_map/RelativeMapNodelet', '/car/manager')])
+
+    def test_nodelet_false_is_a_node(self):
+        config = load('relative_map.launch', 'nodelet:=false')
+        self.assertEqual([(node.name, node.package, node.type) for node in config.nodes],
+                         [('relative_map', 'relative_map', 'relative_map_node')])
+        self.assertIn('/relative_map/map_param/default_left_width', config.params)
+
+    def test_rate_takes_the_place_of_the_files(self):
+        for nodelet in ('true', 'false'):
+            params = load('relative_map.launch', 'rate:=50', 'nodelet:=' + nodelet).params
+            self.assertEqual(params['/relative_map/rate'].value, 50)
+
+    def test_config_names_another_file(self):
+        with tempfile.NamedTemporaryFile('w', suffix='.yaml') as file:
+            file.write('rate: 25.0\n')
+            file.flush()
+            params = load('relative_map.launch', 'config:=' + file.name).params
+        self.assertEqual({key: param.value for key, param in params.items() if key.startswith('/relative_map/')},
+                         {'/relative_map/rate': 25.0})
+
+    def test_rviz_is_shown_only_when_asked_for(self):
+        for name in ('relative_map.launch', 'demo.launch'):
+            arguments = NEEDED_ARGUMENTS.get(name, [])
+            self.assertIsNone(node(load(name, *arguments), 'rviz'), name)
+            rviz = node(load(name, 'rviz:=true', *arguments), 'rviz')
+            self.assertEqual((rviz.package, rviz.type), ('rviz', 'rviz'))
+            view = rviz.args.split()[-1]
+            self.assertTrue(os.path.exists(view), view)
+
+    def test_the_demo_hands_its_arguments_on(self):
+        config = load('demo.launch', 'nodelet:=false', 'rate:=20', 'max_speed:=7', *NEEDED_ARGUMENTS['demo.launch'])
+        self.assertEqual(config.params['/relative_map/rate'].value, 20)
+        self.assertEqual(config.params['/vehicle_simulator/max_speed'].value, 7)
+        self.assertEqual(config.params['/vehicle_simulator/navigation_lines'].value, 'a.smoothed b.smoothed')
+        self.assertEqual(node(config, 'relative_map').type, 'relative_map_node')
+        self.assertIn('<robot name="sample_car">', config.params['/robot_description'].value)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('relative_map', 'launch_files', LaunchFiles)
