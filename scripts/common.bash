@@ -29,7 +29,7 @@ else
     python3-roslaunch python3-rosnode python3-rostopic)
   rviz_packages=(rviz)
   test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-nodelet python3-rosbag
-    python3-rostest librostest-dev clang-format catkin-lint)
+    python3-rostest python3-std-srvs librostest-dev clang-format catkin-lint)
 fi
 picture_packages=(xvfb imagemagick libgl1-mesa-dri)
 
