@@ -1,6 +1,7 @@
 #pragma once
 
 #include <geometry_msgs/TransformStamped.h>
+#include <gtest/gtest.h>
 #include <tf2/buffer_core.h>
 
 #include <string>
@@ -30,6 +31,14 @@ class Engine {
     set_xyz(transform.transform.translation, parent_from_child.translation());
     transform.transform.rotation = quaternion(Eigen::Quaterniond(parent_from_child.rotation()));
     transforms_.setTransform(transform, "test", true);
+  }
+
+  /// The map of a tick, which must give one; an empty message and a failure otherwise.
+  MapMsg map_at(const ros::Time& now) {
+    const MapMsgPtr map = engine_.tick(now);
+    if (map) return *map;
+    ADD_FAILURE() << "no map at " << now;
+    return MapMsg();
   }
 
   /// base_link at `pose`.

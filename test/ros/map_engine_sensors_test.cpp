@@ -37,7 +37,7 @@ class MapEngineVelocities : public test::MovingVehicleTest {
     const ros::Time seen = kStamp + ros::Duration(0.2);
     engine->on_localization(shared(localization_of_link(drive, base_from_link, link)), kStamp);
     engine->on_lane_markers(shared(test::lane_markers(seen)), seen);
-    return *engine->tick(seen);
+    return engine.map_at(seen);
   }
 };
 
@@ -76,22 +76,22 @@ TEST_F(MapEngineSensors, MarkersOfACameraGiveTheSameMapAsThoseOfBaseLink) {
     engine->on_lane_markers(shared(markers), kStamp);
     return map_of_base_link();
   };
-  const MapMsgPtr expected = fused(Pose2(), "base_link");
+  const MapMsg expected = fused(Pose2(), "base_link");
 
   Eigen::Isometry3d mount = Eigen::Isometry3d::Identity();
   mount.translate(Eigen::Vector3d(1.8, 0.2, 1.3));
   mount.rotate(yaw(0.1));
   engine.mount("base_link", "camera_link", mount);
-  const MapMsgPtr map = fused(Pose2(Point2(1.8, 0.2), 0.1), "camera_link");
+  const MapMsg map = fused(Pose2(Point2(1.8, 0.2), 0.1), "camera_link");
 
-  ASSERT_EQ(map->fusion.source, FusionState::FUSED) << map->status.message;
-  ASSERT_EQ(expected->fusion.source, FusionState::FUSED) << expected->status.message;
-  EXPECT_LT(expected->fusion.lateral_offset, -0.01);
-  EXPECT_NEAR(map->fusion.lateral_offset, expected->fusion.lateral_offset, 1e-6);
-  EXPECT_NEAR(map->fusion.heading_offset, expected->fusion.heading_offset, 1e-6);
+  ASSERT_EQ(map.fusion.source, FusionState::FUSED) << map.status.message;
+  ASSERT_EQ(expected.fusion.source, FusionState::FUSED) << expected.status.message;
+  EXPECT_LT(expected.fusion.lateral_offset, -0.01);
+  EXPECT_NEAR(map.fusion.lateral_offset, expected.fusion.lateral_offset, 1e-6);
+  EXPECT_NEAR(map.fusion.heading_offset, expected.fusion.heading_offset, 1e-6);
   // Up to 30 m: the view range is counted from the sensor.
-  const auto& path = map->navigation_path[1].navigation_path.path.path_point;
-  const auto& other = expected->navigation_path[1].navigation_path.path.path_point;
+  const auto& path = map.navigation_path[1].navigation_path.path.path_point;
+  const auto& other = expected.navigation_path[1].navigation_path.path.path_point;
   for (std::size_t i = 0; path[i].x < 30.0; ++i) {
     EXPECT_NEAR(path[i].x, other[i].x, 1e-6) << i;
     EXPECT_NEAR(path[i].y, other[i].y, 1e-6) << i;
@@ -100,10 +100,10 @@ TEST_F(MapEngineSensors, MarkersOfACameraGiveTheSameMapAsThoseOfBaseLink) {
 
 TEST_F(MapEngineSensors, MarkersWithoutTransformAreDroppedByName) {
   engine->on_lane_markers(shared(test::lane_markers(kStamp, 0.0, "camera_link")), kStamp);
-  const MapMsgPtr map = map_of_base_link();
-  EXPECT_EQ(map->status.code, MapStatus::OK);
-  EXPECT_EQ(map->fusion.source, FusionState::NAVIGATION_LINE);
-  EXPECT_THAT(map->status.message,
+  const MapMsg map = map_of_base_link();
+  EXPECT_EQ(map.status.code, MapStatus::OK);
+  EXPECT_EQ(map.fusion.source, FusionState::NAVIGATION_LINE);
+  EXPECT_THAT(map.status.message,
               AllOf(HasSubstr("lane markers"), HasSubstr("'camera_link'"), HasSubstr("'base_link'")));
 }
 
@@ -113,22 +113,22 @@ TEST_F(MapEngineSensors, MarkersWithoutTransformDoNotHideWhatElseIsWrong) {
       test::navigation_path(core::test::straight(Pose2(Point2(0.0, 0.0), 0.0), 90.0, 1.0), "far_away", 9));
   engine.set_lines(lines);
   engine->on_lane_markers(shared(test::lane_markers(kStamp, 0.0, "camera_link")), kStamp);
-  EXPECT_THAT(map_of_base_link()->status.message, AllOf(HasSubstr("'camera_link'"), HasSubstr("far_away")));
+  EXPECT_THAT(map_of_base_link().status.message, AllOf(HasSubstr("'camera_link'"), HasSubstr("far_away")));
 }
 
 TEST_F(MapEngineVelocities, MarkersWithoutTransformAreNamedWhereTheyAreAllThereIs) {
   engine->on_lane_markers(shared(test::lane_markers(kStamp, 0.0, "camera_link")), kStamp);
-  const MapMsgPtr map = map_of_base_link();
-  EXPECT_EQ(map->status.code, MapStatus::MARKERS_UNUSABLE);
-  EXPECT_THAT(map->status.message, HasSubstr("'camera_link'"));
+  const MapMsg map = map_of_base_link();
+  EXPECT_EQ(map.status.code, MapStatus::MARKERS_UNUSABLE);
+  EXPECT_THAT(map.status.message, HasSubstr("'camera_link'"));
 }
 
 TEST_F(MapEngineSensors, MarkersThatComeBackInAKnownFrameAreUsedAgain) {
   engine->on_lane_markers(shared(test::lane_markers(kStamp, 0.0, "camera_link")), kStamp);
   engine->on_lane_markers(shared(test::lane_markers(kStamp, 0.0, "/base_link")), kStamp);
-  const MapMsgPtr map = map_of_base_link();
-  EXPECT_EQ(map->fusion.source, FusionState::FUSED);
-  EXPECT_THAT(map->status.message, Not(HasSubstr("camera_link")));
+  const MapMsg map = map_of_base_link();
+  EXPECT_EQ(map.fusion.source, FusionState::FUSED);
+  EXPECT_THAT(map.status.message, Not(HasSubstr("camera_link")));
 }
 
 }  // namespace

@@ -31,33 +31,29 @@ class MapEngineOnItsWay : public testing::Test {
   MapEngineOnItsWay() {
     engine.set_lines(test::three_lanes(Pose2()));
     engine.drive_to(kOnMiddleLane, kStart);
-    first_ = engine->tick(kStart);
+    first_ = engine.map_at(kStart);
   }
-  void SetUp() override {
-    ASSERT_NE(first_, nullptr);
-    ASSERT_EQ(first_->hdmap.lane.size(), 3u) << first_->status.message;
-  }
+  void SetUp() override { ASSERT_EQ(first_.hdmap.lane.size(), 3u) << first_.status.message; }
 
   Engine engine;
-  MapMsgPtr first_;
+  MapMsg first_;
 };
 
 TEST(MapEngine, SaysThatThereIsNoLocalizationAtEachTick) {
   Engine engine;
   for (int i = 0; i < 3; ++i) {
-    const MapMsgPtr map = engine->tick(after(0.1 * i));
-    ASSERT_NE(map, nullptr);
-    EXPECT_EQ(map->status.code, MapStatus::NO_LOCALIZATION);
-    EXPECT_EQ(map->header.stamp, after(0.1 * i));
-    EXPECT_EQ(map->header.frame_id, "base_link");
-    EXPECT_THAT(map->hdmap.lane, IsEmpty());
+    const MapMsg map = engine.map_at(after(0.1 * i));
+    EXPECT_EQ(map.status.code, MapStatus::NO_LOCALIZATION);
+    EXPECT_EQ(map.header.stamp, after(0.1 * i));
+    EXPECT_EQ(map.header.frame_id, "base_link");
+    EXPECT_THAT(map.hdmap.lane, IsEmpty());
   }
 }
 
 TEST(MapEngine, SaysThatThereIsNoLine) {
   Engine engine;
   engine.drive_to(kOnMiddleLane, kStart);
-  EXPECT_EQ(engine->tick(kStart)->status.code, MapStatus::NO_NAVIGATION_LINE);
+  EXPECT_EQ(engine.map_at(kStart).status.code, MapStatus::NO_NAVIGATION_LINE);
 }
 
 TEST(MapEngine, SaysWhyLinesAreOfNoUse) {
@@ -68,19 +64,19 @@ TEST(MapEngine, SaysWhyLinesAreOfNoUse) {
   Engine engine;
   engine.set_lines(lines);
   engine.drive_to(kOnMiddleLane, kStart);
-  const MapMsgPtr map = engine->tick(kStart);
-  EXPECT_EQ(map->status.code, MapStatus::NO_NAVIGATION_LINE);
-  EXPECT_THAT(map->status.message, AllOf(HasSubstr("left"), HasSubstr("middle"), HasSubstr("right")));
+  const MapMsg map = engine.map_at(kStart);
+  EXPECT_EQ(map.status.code, MapStatus::NO_NAVIGATION_LINE);
+  EXPECT_THAT(map.status.message, AllOf(HasSubstr("left"), HasSubstr("middle"), HasSubstr("right")));
 }
 
 TEST_F(MapEngineOnItsWay, StampsTheMapWithThePose) {
-  EXPECT_EQ(first_->header.stamp, kStart);
+  EXPECT_EQ(first_.header.stamp, kStart);
   engine.drive_to(kOnMiddleLane, after(0.07));
-  EXPECT_EQ(engine->tick(after(0.1))->header.stamp, after(0.07));
+  EXPECT_EQ(engine.map_at(after(0.1)).header.stamp, after(0.07));
 }
 
 TEST_F(MapEngineOnItsWay, CountsItsMapsOneByOne) {
-  uint32_t last = first_->sequence_num;
+  uint32_t last = first_.sequence_num;
   for (int i = 1; i < 20; ++i) {
     if (i % 3 != 0) engine.drive_to(kOnMiddleLane, after(0.1 * i));
     if (i == 10) engine->reset();
@@ -89,7 +85,7 @@ TEST_F(MapEngineOnItsWay, CountsItsMapsOneByOne) {
       EXPECT_EQ(map->sequence_num, ++last);
     }
   }
-  EXPECT_GT(last, first_->sequence_num + 10);
+  EXPECT_GT(last, first_.sequence_num + 10);
 }
 
 TEST_F(MapEngineOnItsWay, DoesNotMapAPoseTwice) {
@@ -103,35 +99,33 @@ TEST_F(MapEngineOnItsWay, DoesNotMapAPoseTwice) {
 TEST_F(MapEngineOnItsWay, EmptiesTheMapWhenThePoseIsStaleAndGoesOnSayingSo) {
   EXPECT_EQ(engine->tick(after(0.5)), nullptr);
   for (const double seconds : {0.6, 0.7, 0.8}) {
-    const MapMsgPtr map = engine->tick(after(seconds));
-    ASSERT_NE(map, nullptr) << seconds;
-    EXPECT_EQ(map->status.code, MapStatus::STALE_LOCALIZATION);
-    EXPECT_EQ(map->header.stamp, after(seconds));
-    EXPECT_THAT(map->hdmap.lane, IsEmpty());
+    const MapMsg map = engine.map_at(after(seconds));
+    EXPECT_EQ(map.status.code, MapStatus::STALE_LOCALIZATION);
+    EXPECT_EQ(map.header.stamp, after(seconds));
+    EXPECT_THAT(map.hdmap.lane, IsEmpty());
   }
   engine.drive_to(kOnMiddleLane, after(0.9));
-  EXPECT_EQ(engine->tick(after(0.9))->status.code, MapStatus::OK);
+  EXPECT_EQ(engine.map_at(after(0.9)).status.code, MapStatus::OK);
 }
 
 TEST_F(MapEngineOnItsWay, EmptiesTheMapWhenAPoseIsOfTheFutureAndGoesOnSayingSo) {
   engine.drive_to(kOnMiddleLane, after(3600.0));
   for (const double seconds : {0.1, 0.2, 0.3}) {
-    const MapMsgPtr map = engine->tick(after(seconds));
-    ASSERT_NE(map, nullptr) << seconds;
-    EXPECT_EQ(map->status.code, MapStatus::INVALID_LOCALIZATION);
-    EXPECT_THAT(map->status.message, HasSubstr("ahead of the clock"));
-    EXPECT_EQ(map->header.stamp, after(seconds));
-    EXPECT_THAT(map->hdmap.lane, IsEmpty());
+    const MapMsg map = engine.map_at(after(seconds));
+    EXPECT_EQ(map.status.code, MapStatus::INVALID_LOCALIZATION);
+    EXPECT_THAT(map.status.message, HasSubstr("ahead of the clock"));
+    EXPECT_EQ(map.header.stamp, after(seconds));
+    EXPECT_THAT(map.hdmap.lane, IsEmpty());
   }
   engine.drive_to(kOnMiddleLane, after(0.4));
-  EXPECT_EQ(engine->tick(after(0.4))->status.code, MapStatus::OK);
+  EXPECT_EQ(engine.map_at(after(0.4)).status.code, MapStatus::OK);
 }
 
 TEST_F(MapEngineOnItsWay, PutsUpWithAClockThatIsALittleBehind) {
   engine.drive_to(kOnMiddleLane, after(0.2));
-  const MapMsgPtr map = engine->tick(after(0.1));
-  EXPECT_EQ(map->status.code, MapStatus::OK);
-  EXPECT_EQ(map->header.stamp, after(0.2));
+  const MapMsg map = engine.map_at(after(0.1));
+  EXPECT_EQ(map.status.code, MapStatus::OK);
+  EXPECT_EQ(map.header.stamp, after(0.2));
   EXPECT_EQ(engine->tick(after(0.15)), nullptr);
 }
 
@@ -139,42 +133,40 @@ TEST_F(MapEngineOnItsWay, EmptiesTheMapWhenAPoseIsNotFinite) {
   LocalizationEstimate bad = localization(kOnMiddleLane, after(0.1));
   bad.pose.position.y = kNaN;
   engine->on_localization(shared(bad), after(0.1));
-  const MapMsgPtr map = engine->tick(after(0.1));
-  EXPECT_EQ(map->status.code, MapStatus::INVALID_LOCALIZATION);
-  EXPECT_THAT(map->status.message, HasSubstr("position.y"));
-  EXPECT_THAT(map->hdmap.lane, IsEmpty());
+  const MapMsg map = engine.map_at(after(0.1));
+  EXPECT_EQ(map.status.code, MapStatus::INVALID_LOCALIZATION);
+  EXPECT_THAT(map.status.message, HasSubstr("position.y"));
+  EXPECT_THAT(map.hdmap.lane, IsEmpty());
 }
 
 TEST_F(MapEngineOnItsWay, ForgetsAllButTheLinesWhenTheClockGoesBack) {
   engine->on_lane_markers(shared(test::lane_markers(kStart)), kStart);
   const ros::Time earlier(50.0);
-  const MapMsgPtr map = engine->tick(earlier);
-  ASSERT_NE(map, nullptr);
-  EXPECT_EQ(map->status.code, MapStatus::NO_LOCALIZATION);
-  EXPECT_EQ(map->localization, LocalizationEstimate());
-  EXPECT_EQ(map->lane_marker, LaneMarkers());
-  EXPECT_EQ(map->sequence_num, first_->sequence_num + 1);
+  const MapMsg map = engine.map_at(earlier);
+  EXPECT_EQ(map.status.code, MapStatus::NO_LOCALIZATION);
+  EXPECT_EQ(map.localization, LocalizationEstimate());
+  EXPECT_EQ(map.lane_marker, LaneMarkers());
+  EXPECT_EQ(map.sequence_num, first_.sequence_num + 1);
   engine.drive_to(kOnMiddleLane, earlier + ros::Duration(0.1));
-  EXPECT_EQ(engine->tick(earlier + ros::Duration(0.1))->hdmap.lane.size(), 3u);
+  EXPECT_EQ(engine.map_at(earlier + ros::Duration(0.1)).hdmap.lane.size(), 3u);
 }
 
 TEST_F(MapEngineOnItsWay, MapsTheSamePoseAgainAfterTheClockWentBack) {
   engine->tick(ros::Time(50.0));
   engine.drive_to(kOnMiddleLane, kStart);
-  EXPECT_EQ(engine->tick(kStart)->status.code, MapStatus::OK);
+  EXPECT_EQ(engine.map_at(kStart).status.code, MapStatus::OK);
 }
 
 TEST_F(MapEngineOnItsWay, ForgetsAllButTheLinesOnReset) {
   engine->on_lane_markers(shared(test::lane_markers(kStart)), kStart);
   engine->reset();
-  const MapMsgPtr map = engine->tick(after(0.1));
-  ASSERT_NE(map, nullptr);
-  EXPECT_EQ(map->status.code, MapStatus::NO_LOCALIZATION);
-  EXPECT_EQ(map->lane_marker, LaneMarkers());
+  const MapMsg map = engine.map_at(after(0.1));
+  EXPECT_EQ(map.status.code, MapStatus::NO_LOCALIZATION);
+  EXPECT_EQ(map.lane_marker, LaneMarkers());
   engine.drive_to(kOnMiddleLane, after(0.2));
-  const MapMsgPtr next = engine->tick(after(0.2));
-  EXPECT_EQ(next->hdmap.lane.size(), 3u);
-  EXPECT_EQ(next->fusion.source, FusionState::NAVIGATION_LINE);
+  const MapMsg next = engine.map_at(after(0.2));
+  EXPECT_EQ(next.hdmap.lane.size(), 3u);
+  EXPECT_EQ(next.fusion.source, FusionState::NAVIGATION_LINE);
 }
 
 TEST_F(MapEngineOnItsWay, PassesMarkersAndLocalizationOnAsTheyCame) {
@@ -185,10 +177,10 @@ TEST_F(MapEngineOnItsWay, PassesMarkersAndLocalizationOnAsTheyCame) {
   pose.pose.euler_angles.x = kNaN;  // not read
   engine->on_lane_markers(shared(markers), after(0.1));
   engine->on_localization(shared(pose), after(0.1));
-  const MapMsgPtr map = engine->tick(after(0.1));
-  EXPECT_EQ(map->status.code, MapStatus::OK);
-  EXPECT_EQ(map->lane_marker, markers);
-  EXPECT_EQ(map->localization.uncertainty, pose.uncertainty);
+  const MapMsg map = engine.map_at(after(0.1));
+  EXPECT_EQ(map.status.code, MapStatus::OK);
+  EXPECT_EQ(map.lane_marker, markers);
+  EXPECT_EQ(map.localization.uncertainty, pose.uncertainty);
 }
 
 TEST_F(MapEngineOnItsWay, TakesANewConfigurationWithTheNextMap) {
@@ -197,25 +189,27 @@ TEST_F(MapEngineOnItsWay, TakesANewConfigurationWithTheNextMap) {
   config.navigation_lane.max_len_from_navigation_line = 50.0;
   engine->set_config(config);
   engine.drive_to(kOnMiddleLane, after(0.1));
-  const MapMsgPtr map = engine->tick(after(0.1));
-  EXPECT_EQ(map->hdmap.lane[0].speed_limit, 13.0);
-  EXPECT_LT(map->hdmap.lane[0].length, 60.0);
+  const MapMsg map = engine.map_at(after(0.1));
+  EXPECT_EQ(map.hdmap.lane[0].speed_limit, 13.0);
+  EXPECT_LT(map.hdmap.lane[0].length, 60.0);
 }
 
 TEST_F(MapEngineOnItsWay, EachMapIsAMessageOfItsOwn) {
-  const MapMsg copy = *first_;
-  engine.drive_to(Pose2(Point2(30.0, -3.0), 0.1), after(0.1));
-  engine->on_lane_markers(shared(test::lane_markers(after(0.1))), after(0.1));
-  const MapMsgPtr next = engine->tick(after(0.1));
-  EXPECT_NE(next, first_);
-  EXPECT_EQ(*first_, copy);
+  engine.drive_to(kOnMiddleLane, after(0.1));
+  const MapMsgPtr map = engine->tick(after(0.1));
+  ASSERT_NE(map, nullptr);
+  const MapMsg copy = *map;
+  engine.drive_to(Pose2(Point2(30.0, -3.0), 0.1), after(0.2));
+  engine->on_lane_markers(shared(test::lane_markers(after(0.2))), after(0.2));
+  EXPECT_NE(engine->tick(after(0.2)), map);
+  EXPECT_EQ(*map, copy);
 }
 
 TEST_F(MapEngineOnItsWay, TheSameInputsGiveTheSameMap) {
   Engine other;
   other.set_lines(test::three_lanes(Pose2()));
   other.drive_to(kOnMiddleLane, kStart);
-  EXPECT_EQ(*other->tick(kStart), *first_);
+  EXPECT_EQ(other.map_at(kStart), first_);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ MapMsg map_with(const LaneMarkers& markers, const core::PipelineConfig& config =
   engine.set_lines(test::three_lanes(Pose2()));
   engine.drive_to(Pose2(Point2(20.0, 0.0), 0.0), kStamp);
   engine->on_lane_markers(shared(markers), kStamp);
-  return *engine->tick(kStamp);
+  return engine.map_at(kStamp);
 }
 
 MapMsg fused_map() {
@@ -42,7 +42,7 @@ MapMsg fused_map() {
 }
 
 MapMsg empty_map() {
-  return *Engine()->tick(kStamp);
+  return Engine().map_at(kStamp);
 }
 
 MarkerArray draw(const MapMsg& map) {
@@ -114,7 +114,7 @@ TEST(MapMarkers, ShowNothingButStatusAndFootprintOfAnEmptyMap) {
 TEST(MapMarkers, ShowNothingOfAnEmptyMapThatHasMarkersWithIt) {
   Engine engine;
   engine->on_lane_markers(shared(test::lane_markers(kStamp)), kStamp);
-  const MapMsg map = *engine->tick(kStamp);
+  const MapMsg map = engine.map_at(kStamp);
   ASSERT_EQ(map.status.code, MapStatus::NO_LOCALIZATION);
   EXPECT_THAT(namespaces(draw(map)), ElementsAre("footprint", "status"));
 }
@@ -142,7 +142,7 @@ TEST(MapMarkers, AreNotMoreOfFinelyRecordedLines) {
     engine.set_lines(info);
     engine.drive_to(Pose2(Point2(10.0, 0.0), 0.0), kStamp);
     std::size_t points = 0;
-    for (const Marker& marker : draw(*engine->tick(kStamp)).markers) points += marker.points.size();
+    for (const Marker& marker : draw(engine.map_at(kStamp)).markers) points += marker.points.size();
     return points;
   };
   EXPECT_GT(points_drawn(1.0), 500u);

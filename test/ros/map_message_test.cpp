@@ -17,7 +17,7 @@ using testing::IsEmpty;
 /// The map of a fused drive, as the pipeline built it and as it was sent.
 struct BuiltAndSent {
   core::RelativeMap built;
-  MapMsgPtr sent;
+  MapMsg sent;
 };
 
 BuiltAndSent map_on_three_lanes(const core::PipelineConfig& config = core::PipelineConfig()) {
@@ -29,7 +29,7 @@ BuiltAndSent map_on_three_lanes(const core::PipelineConfig& config = core::Pipel
   const ros::Time stamp(100, 5);
   engine.drive_to(start.to_parent(Pose2(Point2(20.0, 0.2), 0.01)), stamp);
   engine->on_lane_markers(shared(test::lane_markers(stamp)), stamp);
-  const MapMsgPtr sent = engine->tick(stamp);
+  const MapMsg sent = engine.map_at(stamp);
   return {engine->last_map(), sent};
 }
 
@@ -87,7 +87,7 @@ TEST(MapMessage, AMapReadBackIsTheMapThatWasBuilt) {
   config.generate_left_boundary = false;
   config.navigation_lane.lane_marker_weight = 0.5;
   const auto [built, sent] = map_on_three_lanes(config);
-  const core::RelativeMap back = to_core(*sent);
+  const core::RelativeMap back = to_core(sent);
   ASSERT_EQ(built.lanes.size(), 3u);
   ASSERT_TRUE(built.lanes[0].left_boundary.is_virtual);
   ASSERT_EQ(built.fusion.source, core::Source::kFused);
@@ -134,17 +134,17 @@ TEST(MapMessage, AFusionStateReadBackIsTheSame) {
 }
 
 TEST(MapMessage, AMapReadBackKeepsTheContract) {
-  for (const core::Violation& violation : core::check_map(to_core(*map_on_three_lanes().sent), {})) {
+  for (const core::Violation& violation : core::check_map(to_core(map_on_three_lanes().sent), {})) {
     ADD_FAILURE() << violation.row << ": " << violation.what;
   }
 }
 
 TEST(MapMessage, AMapSaysEverythingInApollosTerms) {
   const auto [built, sent] = map_on_three_lanes();
-  EXPECT_EQ(sent->header.stamp, ros::Time(100, 5));
-  EXPECT_EQ(sent->header.frame_id, "base_link");
-  ASSERT_EQ(sent->hdmap.lane.size(), 3u);
-  for (const Lane& lane : sent->hdmap.lane) {
+  EXPECT_EQ(sent.header.stamp, ros::Time(100, 5));
+  EXPECT_EQ(sent.header.frame_id, "base_link");
+  ASSERT_EQ(sent.hdmap.lane.size(), 3u);
+  for (const Lane& lane : sent.hdmap.lane) {
     EXPECT_EQ(lane.type, Lane::CITY_DRIVING);
     EXPECT_EQ(lane.turn, Lane::NO_TURN);
     EXPECT_EQ(lane.direction, Lane::FORWARD);
@@ -157,9 +157,9 @@ TEST(MapMessage, AMapSaysEverythingInApollosTerms) {
     EXPECT_NEAR(segment.heading, -0.01, 1e-3);
     EXPECT_NEAR(lane.left_boundary.curve.segment[0].heading, -0.01, 1e-3);
   }
-  ASSERT_EQ(sent->hdmap.road.size(), 1u);
-  ASSERT_EQ(sent->hdmap.road[0].section.size(), 1u);
-  const auto& edges = sent->hdmap.road[0].section[0].boundary.outer_polygon.edge;
+  ASSERT_EQ(sent.hdmap.road.size(), 1u);
+  ASSERT_EQ(sent.hdmap.road[0].section.size(), 1u);
+  const auto& edges = sent.hdmap.road[0].section[0].boundary.outer_polygon.edge;
   ASSERT_EQ(edges.size(), 2u);
   EXPECT_EQ(edges[0].type, BoundaryEdge::LEFT_BOUNDARY);
   EXPECT_EQ(edges[1].type, BoundaryEdge::RIGHT_BOUNDARY);

@@ -22,7 +22,7 @@ MapMsg good_map() {
   Engine engine;
   engine.set_lines(test::three_lanes(Pose2()));
   engine.drive_to(Pose2(Point2(20.0, 0.3), 0.0), stamp);
-  return *engine->tick(stamp);
+  return engine.map_at(stamp);
 }
 
 std::vector<std::string> broken_rows(const MapMsg& map) {

@@ -55,12 +55,12 @@ class MovingVehicleTest : public testing::Test {
     engine.set_lines(three_lanes(drive.pose.to_parent(Pose2(Point2(-20.0, 0.4), 0.02))));
   }
 
-  MapMsgPtr map_of(const LocalizationEstimate& message) {
+  MapMsg map_of(const LocalizationEstimate& message) {
     engine->on_localization(shared(message), message.header.stamp);
-    return engine->tick(message.header.stamp);
+    return engine.map_at(message.header.stamp);
   }
 
-  MapMsgPtr map_of_base_link() {
+  MapMsg map_of_base_link() {
     return map_of(localization_of_link(drive, Eigen::Isometry3d::Identity(), "base_link"));
   }
 
