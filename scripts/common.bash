@@ -16,7 +16,7 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
   build_packages=(g++ make cmake libboost-dev libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev
     ros-noetic-{catkin,diagnostic-msgs,diagnostic-updater,dynamic-reconfigure,geometry-msgs,message-generation}
     ros-noetic-{message-runtime,nav-msgs,nodelet,pluginlib,rosbag-storage,roscpp,std-msgs,std-srvs,tf2,tf2-msgs}
-    ros-noetic-{tf2-ros,urdf,visualization-msgs,robot-state-publisher,rosbash,roslaunch,rosnode,rostopic})
+    ros-noetic-{tf2-ros,urdf,visualization-msgs,robot-state-publisher,rosbash,roslaunch,rosnode,rosservice,rostopic})
   rviz_packages=(ros-noetic-rviz)
   test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} clang-format catkin-lint)
 else
@@ -25,11 +25,11 @@ else
     python3-dynamic-reconfigure libgeometry-msgs-dev ros-geometry-msgs ros-message-generation ros-message-runtime
     libnav-msgs-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev librosbag-storage-dev libroscpp-dev
     libstd-msgs-dev ros-std-msgs libstd-srvs-dev libtf2-dev libtf2-msgs-dev libtf2-ros-dev liburdf-dev
-    libvisualization-msgs-dev python3-{diagnostic,geometry,nav,visualization}-msgs ros-robot-state-publisher rosbash
-    python3-roslaunch python3-rosnode python3-rostopic)
+    libvisualization-msgs-dev python3-{diagnostic,geometry,nav,tf2,visualization}-msgs python3-std-srvs rosbash
+    ros-robot-state-publisher python3-{roslaunch,rosnode,rosservice,rostopic})
   rviz_packages=(rviz)
   test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-nodelet python3-rosbag
-    python3-rostest python3-std-srvs librostest-dev clang-format catkin-lint)
+    python3-rostest librostest-dev clang-format catkin-lint)
 fi
 picture_packages=(xvfb imagemagick libgl1-mesa-dri)
 
