@@ -135,9 +135,11 @@ class MapLog:
         return self.next_where(lambda head: head.code == code, 'status %d' % code)
 
     def newest_where(self, condition, what):
-        """As soon as the newest map, read as a whole, fulfils the condition: that one."""
+        """As soon as the newest map from now on, read as a whole, fulfils the condition: that one."""
+        first = len(self.data)
+
         def found():
-            if not self.data:
+            if len(self.data) == first:
                 return None
             map = self.message(-1)
             return map if condition(map) else None
