@@ -6,6 +6,8 @@ namespace relative_map::core {
 
 namespace {
 
+constexpr std::size_t kLookAround = 4;  // segments past the nearest one that may be nearer yet
+
 /// Signed curvature of the circle through three points; 0 where two of them coincide.
 double menger_curvature(const Point2& a, const Point2& b, const Point2& c) {
   const double sides = (b - a).norm() * (c - b).norm() * (c - a).norm();
@@ -118,59 +120,27 @@ bool PolylineWalker::past_end(std::size_t segment, const Point2& point) const {
   return (point - polyline_[segment + 1]).dot(polyline_[segment + 1] - polyline_[segment]) > 0.0;
 }
 
-// Where the polyline was made point by point beside what walks along it, its next vertex is always the near
-// one.
-bool PolylineWalker::beside_next_vertex(const Point2& point, Foot& foot) {
-  const std::size_t i = segment_ + 1;
-  if (i + 1 >= polyline_.size()) return false;
-  const Point2& vertex = polyline_[i];
-  const Point2 before = vertex - polyline_[i - 1], after = polyline_[i + 1] - vertex, offset = point - vertex;
-  const double ahead = offset.dot(after), behind = -offset.dot(before);
-  const double squared_after = after.squaredNorm(), squared_before = before.squaredNorm();
-  // Nearer to another vertex, a segment past that one may be the nearest: look around.
-  if (ahead > 0.5 * squared_after || behind > 0.5 * squared_before) return false;
-  foot.squared_distance = offset.squaredNorm();
-  if (ahead > 0.0 && (behind <= 0.0 || ahead * ahead * squared_before > behind * behind * squared_after)) {
-    foot.segment = i;
-    foot.fraction = ahead / squared_after;
-    foot.point = vertex + foot.fraction * after;
-    foot.squared_distance -= ahead * foot.fraction;
-  } else {
-    const double back = behind > 0.0 ? behind / squared_before : 0.0;
-    foot.segment = i - 1;
-    foot.fraction = 1.0 - back;
-    foot.point = vertex - back * before;
-    foot.squared_distance -= back * std::max(0.0, behind);
-  }
-  segment_ = i;
-  return true;
-}
-
-Foot PolylineWalker::next(const Point2& point) {
-  Foot foot;
-  return beside_next_vertex(point, foot) ? foot : search(point);
-}
-
 Foot PolylineWalker::search(const Point2& point) {
   const std::size_t last = polyline_.size() - 2, start = segment_;
   while (segment_ < last && past_end(segment_, point)) ++segment_;
   if (segment_ == start) {
     while (segment_ > 0 && !past_start(segment_, point)) --segment_;
   }
-  Foot best = project_on_segment(polyline_[segment_], polyline_[segment_ + 1], point);
-  const auto take_if_nearer = [&](std::size_t segment) {
-    const Foot foot = project_on_segment(polyline_[segment], polyline_[segment + 1], point);
-    if (foot.squared_distance >= best.squared_distance) return false;
-    best = foot;
-    segment_ = segment;
-    return true;
+  const auto foot_on = [&](std::size_t segment) {
+    Foot foot = project_on_segment(polyline_[segment], polyline_[segment + 1], point);
+    foot.segment = segment;
+    return foot;
   };
-  // On the inside of a curve the point lies beside several segments at once: the nearest one counts.
-  while (segment_ < last && past_start(segment_ + 1, point) && take_if_nearer(segment_ + 1)) {
-  }
-  while (segment_ > 0 && !past_end(segment_ - 1, point) && take_if_nearer(segment_ - 1)) {
-  }
-  best.segment = segment_;
+  Foot best = foot_on(segment_);
+  // On the inside of a curve the point lies beside several segments at once, and a kink may hide a nearer
+  // one.
+  const auto take_nearer = [&](const Foot& foot) {
+    if (foot.squared_distance < best.squared_distance) best = foot;
+  };
+  for (std::size_t i = segment_ + 1; i <= std::min(last, best.segment + kLookAround); ++i)
+    take_nearer(foot_on(i));
+  for (std::size_t i = segment_; i-- > 0 && i + kLookAround >= best.segment;) take_nearer(foot_on(i));
+  segment_ = best.segment;
   return best;
 }
 

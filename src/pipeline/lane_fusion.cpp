@@ -8,14 +8,13 @@ namespace relative_map::core {
 namespace {
 
 constexpr double kSameLane = 2.5;       // [m] apart that line and markers of one lane may be
-constexpr double kSameDirection = 0.3;  // [rad] between them
+constexpr double kSameDirection = 0.2;  // [rad] between them
 constexpr double kTrustStep = 1.0;      // [m] between the places where that is looked at
 constexpr double kDirectionReach =
     2.5;  // [m] to both sides, over which a line's direction is taken: it may be noisy
 constexpr double kDifferenceStep =
     5.0;  // [m] between the places that slopes are taken from, for the same reason
-constexpr double kSettleLength =
-    20.0;  // [m] behind the first paint, over which the slope of the correction ends
+constexpr double kSettleLength = 20.0;  // [m] past the paint, over which the slope of the correction ends
 
 /// The line and the marker path, looked up at the same arc length from the vehicle.
 class PathPair {
@@ -74,14 +73,15 @@ Ending ending_at(PathPair& pair, double end, double inward, double length) {
   return ending;
 }
 
-/// The quintic from an ending to rest in 0 after `length` [m], at a distance past the end.
+/// From an ending to rest in 0, by quintics: the value over `length` [m], slope and bend sooner, since they
+/// would else carry it far away. `distance` is past the end.
 Point2 fade_out(const Ending& ending, double distance, double length) {
-  const double t = distance / length;
-  if (t >= 1.0) return Point2::Zero();
-  const double t2 = t * t, t3 = t2 * t;
+  const double settle_length = std::min(length, kSettleLength);
+  const double t = std::min(1.0, distance / length), u = std::min(1.0, distance / settle_length);
+  const double t3 = t * t * t, u2 = u * u, u3 = u2 * u;
   return ending.value * (1.0 - t3 * (10.0 - t * (15.0 - 6.0 * t))) +
-         ending.slope * length * (t - t3 * (6.0 - t * (8.0 - 3.0 * t))) +
-         ending.bend * length * length * 0.5 * (t2 - t3 * (3.0 - t * (3.0 - t)));
+         ending.slope * settle_length * (u - u3 * (6.0 - u * (8.0 - 3.0 * u))) +
+         ending.bend * settle_length * settle_length * 0.5 * (u2 - u3 * (3.0 - u * (3.0 - u)));
 }
 
 /// What the line is moved by to become the marker path, at a distance [m] from the vehicle along it.

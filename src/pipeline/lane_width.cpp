@@ -33,12 +33,14 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
   result.reserve(lane.points.size());
   for (const PathPoint& vertex : lane.points) {
     const Foot foot = walker.next(vertex.position);
-    const PathPoint& end_vertex = foot.fraction < 0.5 ? other.points.front() : other.points.back();
-    const double distance = std::sqrt(foot.squared_distance);
-    const double past_end = std::abs(end_vertex.direction.dot(vertex.position - foot.point));
+    const double spacing = std::sqrt(foot.squared_distance);
     const double start = other.points[foot.segment].s, end = other.points[foot.segment + 1].s;
-    result.push_back({!walker.beyond_end(foot) || past_end < kAlmostSquare * distance, foot.point, distance,
-                      start + foot.fraction * (end - start)});
+    result.push_back({true, foot.point, spacing, start + foot.fraction * (end - start)});
+    if (walker.beyond_end(foot)) {
+      const PathPoint& end_vertex = foot.fraction < 0.5 ? other.points.front() : other.points.back();
+      const double past_end = std::abs(end_vertex.direction.dot(vertex.position - foot.point));
+      result.back().exists = past_end < kAlmostSquare * spacing;
+    }
   }
   return result;
 }
@@ -48,11 +50,16 @@ std::optional<double> first_narrow_place(const LanePath& lane, const LanePath& b
   const Polyline centerline = positions_of(better.points);
   PolylineWalker walker(centerline);
   double s = 0.0;
+  std::size_t last = 0;
   for (std::size_t i = 0; i + 1 < lane.points.size(); ++i) {
     const PathPoint &a = lane.points[i], &b = lane.points[i + 1];
-    for (; s < b.s; s += kSearchStep) {
-      const Foot foot = walker.next(a.position + (s - a.s) / (b.s - a.s) * (b.position - a.position));
-      if (!walker.beyond_end(foot) && foot.squared_distance < spacing * spacing) return s;
+    while (s < b.s) {
+      const Point2 place = a.position + (s - a.s) / (b.s - a.s) * (b.position - a.position);
+      const Foot foot = walker.next(place, std::max<std::size_t>(1, i - last));
+      last = i;
+      const double distance = std::sqrt(foot.squared_distance);
+      if (!walker.beyond_end(foot) && distance < spacing) return s;
+      s += std::max(kSearchStep, distance - spacing);  // it comes no nearer by more than the way between
     }
   }
   return std::nullopt;
@@ -99,11 +106,21 @@ bool drop_one(std::vector<LanePath>& lanes, double half_width, const std::string
   return false;
 }
 
-Point2 border_point(const PathPoint& vertex, double half_width, Side side) {
+/// [1/m] over a stretch of `reach` [m] to both sides: a noisy line has sharp bends at single vertices.
+double mean_curvature(const PathPoints& points, std::size_t i, double reach) {
+  std::size_t first = i, last = i;
+  while (first > 0 && points[i].s - points[first].s < reach) --first;
+  while (last + 1 < points.size() && points[last].s - points[i].s < reach) ++last;
+  return angle_difference(points[last].theta, points[first].theta) / (points[last].s - points[first].s);
+}
+
+Point2 border_point(const PathPoints& points, std::size_t i, double half_width, Side side) {
   const double sign = static_cast<double>(side);
-  const double inward = vertex.kappa * sign;  // > 0: the curve turns to this side
-  if (inward * half_width > kSharpestFold) half_width = kSharpestFold / inward;
-  return vertex.position + sign * half_width * left_of(vertex.direction);
+  if (points[i].kappa * sign * half_width > kSharpestFold) {  // the curve turns to this side, or it is noise
+    const double inward = mean_curvature(points, i, half_width) * sign;
+    if (inward * half_width > kSharpestFold) half_width = kSharpestFold / inward;
+  }
+  return points[i].position + sign * half_width * left_of(points[i].direction);
 }
 
 /// Where a neighbour has ended, the border swings from the midline to the lane's own half width.
@@ -148,7 +165,7 @@ Polyline own_border(const LanePath& lane, const std::vector<Beside>& beside, dou
       width = half_width_past_neighbor(half_width, std::min(half_width, 0.5 * beside[nearest].spacing),
                                        std::abs(lane.points[i].s - lane.points[nearest].s));
     }
-    border.push_back(border_point(lane.points[i], width, side));
+    border.push_back(border_point(lane.points, i, width, side));
   }
   return border;
 }
@@ -175,6 +192,7 @@ std::optional<Middle> middle_at_end(const LanePath& left, const PathPoint& end, 
 std::vector<Middle> midline(const LanePath& left, const LanePath& right, const std::vector<Beside>& beside,
                             const Stretch& stretch) {
   std::vector<Middle> line;
+  line.reserve(stretch.last - stretch.first + 3);
   for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
     const PathPoint& vertex = left.points[i];
     line.push_back({0.5 * (vertex.position + beside[i].point), beside[i].spacing, vertex.s, beside[i].s});
@@ -197,19 +215,19 @@ template <class PlaceAlong>
 Polyline prolonged(const std::vector<Middle>& midline, const LanePath& lane, double own, Side side,
                    PlaceAlong s_of) {
   const Middle &first = midline.front(), &last = midline.back();
-  const auto beyond = [&](const PathPoint& vertex, const Middle& end) {
-    const double distance = std::abs(vertex.s - s_of(end));
-    return border_point(vertex, half_width_past_neighbor(own, 0.5 * end.spacing, distance), side);
-  };
   Polyline border;
   border.reserve(lane.points.size() + 2);
-  for (const PathPoint& vertex : lane.points) {
-    if (vertex.s >= s_of(first) - kJoinGap) break;
-    border.push_back(beyond(vertex, first));
+  const auto add_beyond = [&](std::size_t i, const Middle& end) {
+    const double distance = std::abs(lane.points[i].s - s_of(end));
+    const double width = half_width_past_neighbor(own, 0.5 * end.spacing, distance);
+    border.push_back(border_point(lane.points, i, width, side));
+  };
+  for (std::size_t i = 0; i < lane.points.size() && lane.points[i].s < s_of(first) - kJoinGap; ++i) {
+    add_beyond(i, first);
   }
   for (const Middle& middle : midline) border.push_back(middle.point);
-  for (const PathPoint& vertex : lane.points) {
-    if (vertex.s > s_of(last) + kJoinGap) border.push_back(beyond(vertex, last));
+  for (std::size_t i = 0; i < lane.points.size(); ++i) {
+    if (lane.points[i].s > s_of(last) + kJoinGap) add_beyond(i, last);
   }
   return border;
 }

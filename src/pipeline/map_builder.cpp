@@ -7,17 +7,22 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kRoadSampleStep = 5.0;  // [m] the road's edge needs no sample at each vertex
+constexpr double kSampleStep = 1.0;      // [m] between width samples: vertices may be far denser
+constexpr double kRoadSampleStep = 5.0;  // [m]
 
-/// Distance to the border from each vertex, or from one every `step` [m], the last one included.
-std::vector<WidthSample> measure(const PathPoints& path, const Polyline& border, double step = 0.0) {
+/// Distance to the border from a vertex every `step` [m], the first and the last one included.
+std::vector<WidthSample> measure(const PathPoints& path, const Polyline& border, double step) {
   PolylineWalker walker(border);
   std::vector<WidthSample> samples;
-  samples.reserve(step > 0.0 ? static_cast<std::size_t>(path.back().s / step) + 2 : path.size());
+  samples.reserve(static_cast<std::size_t>(path.back().s / step) + 2);
+  std::size_t steps = 0;
+  double next_s = 0.0;
   for (const PathPoint& vertex : path) {
-    const bool last = &vertex == &path.back();
-    if (!last && !samples.empty() && vertex.s < samples.back().s + step) continue;
-    samples.push_back({vertex.s, std::sqrt(walker.next(vertex.position).squared_distance)});
+    ++steps;
+    if (vertex.s < next_s && &vertex != &path.back()) continue;
+    samples.push_back({vertex.s, std::sqrt(walker.next(vertex.position, steps).squared_distance)});
+    steps = 0;
+    next_s = vertex.s + step;
   }
   return samples;
 }
@@ -105,8 +110,8 @@ RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::siz
     Lane lane = make_lane(std::move(lanes[i]), config.map_param.default_speed_limit);
     lane.left_boundary = make_boundary(std::move(borders.left[i]));
     lane.right_boundary = make_boundary(std::move(borders.right[i]));
-    lane.left_samples = measure(lane.path, lane.left_boundary.points);
-    lane.right_samples = measure(lane.path, lane.right_boundary.points);
+    lane.left_samples = measure(lane.path, lane.left_boundary.points, kSampleStep);
+    lane.right_samples = measure(lane.path, lane.right_boundary.points, kSampleStep);
     if (i > 0 && borders.left_is_shared[i]) {
       lane.left_neighbor_id = map.lanes.back().id;
       map.lanes.back().right_neighbor_id = lane.id;

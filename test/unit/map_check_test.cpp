@@ -134,8 +134,9 @@ TEST(MapCheck, NeighborsWithAGapBetweenTheirBoundariesBreakTheirRow) {
   for (std::size_t i = 0; i < right.left_boundary.points.size(); ++i)
     right.left_boundary.points[i].y() -= 0.1;
   PolylineWalker walker(right.left_boundary.points);
-  for (std::size_t i = 0; i < right.path.size(); ++i) {
-    right.left_samples[i].width = std::sqrt(walker.next(right.path[i].position).squared_distance);
+  std::size_t hint = 0;
+  for (WidthSample& sample : right.left_samples) {
+    sample.width = std::sqrt(walker.next(interpolate(right.path, sample.s, hint).position).squared_distance);
   }
   EXPECT_THAT(broken_rows(map), ElementsAre("neighbors"));
 }

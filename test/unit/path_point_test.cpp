@@ -215,6 +215,42 @@ TEST(PolylineWalker, FindsTheNearestOfSeveralSegmentsThatAPointLiesBeside) {
   }
 }
 
+TEST(PolylineWalker, OnThePolylineTheDistanceIsANumber) {
+  // By Pythagoras the square of nothing may come out as less than nothing.
+  const Polyline polyline = straight(Pose2(Point2(-0.984, -4.507), 0.0458), 50.0, 0.4707);
+  PolylineWalker walker(polyline);
+  const Point2 start = polyline.front(), step = (polyline.back() - polyline.front()) / 1000.0;
+  for (int i = 0; i <= 1000; ++i) {
+    const Foot foot = walker.next(start + i * step);
+    EXPECT_GE(foot.squared_distance, 0.0);
+    EXPECT_LT(foot.squared_distance, 1e-12);
+  }
+}
+
+TEST(PolylineWalker, GoesByAGuessOfHowFarItIs) {
+  const Polyline polyline = arc(Pose2(), 0.02, 100.0, 0.5);
+  const Polyline beside = arc(Pose2(Point2(0.0, -2.0), 0.0), 1.0 / 52.0, 100.0, 0.5);
+  for (const std::size_t steps : {2u, 10u, 30u}) {
+    for (const std::size_t guess : {1u, 5u, 60u}) {
+      PolylineWalker walker(polyline);
+      for (std::size_t i = 0; i < beside.size(); i += steps) {
+        EXPECT_NEAR(std::sqrt(walker.next(beside[i], guess).squared_distance),
+                    test::distance_by_brute_force(polyline, beside[i]), 1e-9);
+      }
+    }
+  }
+}
+
+TEST(PolylineWalker, IsNotHeldUpByAKink) {
+  Polyline polyline = straight(Pose2(), 50.0, 0.25);
+  polyline[80] += Point2(-0.3, 0.2);  // so noisy that it steps back
+  PolylineWalker walker(polyline);
+  for (double x = 1.0; x < 49.0; x += 0.4) {
+    EXPECT_NEAR(std::sqrt(walker.next(Point2(x, 1.75)).squared_distance),
+                test::distance_by_brute_force(polyline, Point2(x, 1.75)), 1e-9);
+  }
+}
+
 TEST(PolylineWalker, WalksBackToo) {
   const Polyline polyline = straight(Pose2(), 100.0, 1.0);
   PolylineWalker walker(polyline);

@@ -84,6 +84,20 @@ TEST(Pipeline, ALaneThatBeginsAheadIsNotTheCurrentOneYet) {
   EXPECT_EQ(scene.at(Pose2(Point2(61.0, -2.0), 0.0)).current_lane_id, "next");
 }
 
+TEST(Pipeline, OrdersALaneThatBeginsRoundABendByWhereItBegins) {
+  // The road turns right by 90 degrees. Seen straight along its start, the right lane of the far leg would
+  // pass left of the vehicle.
+  const Pose2 start;
+  Scene scene(
+      {recording(test::arc(start, -1.0 / 12.0, 40.0, 0.4), "round"),
+       recording(test::arc(test::along_arc(start, -1.0 / 12.0, 12.0).to_parent(Pose2(Point2(0.0, -3.0), 0.0)),
+                           -1.0 / 9.0, 20.0, 0.3),
+                 "inside", 1)});
+  const RelativeMap map = scene.at(test::along_arc(start, -1.0 / 12.0, 1.0));
+  EXPECT_EQ(lane_ids(map), Ids({"round", "inside"}));
+  EXPECT_EQ(map.lanes[1].left_neighbor_id, "round");
+}
+
 TEST(Pipeline, ShiftsPrioritiesSoThatTheBestLeftHasZero) {
   Scene scene(three_straight_lines());
   const RelativeMap map = scene.at(Pose2(Point2(100.0, -12.0), 0.0));  // the left line is 15.5 m away

@@ -67,7 +67,8 @@ class PolylineWalker {
   /// `polyline` must have two or more points and outlive the walker, which starts at `segment`.
   explicit PolylineWalker(const Polyline& polyline, std::size_t segment = 0)
       : polyline_(polyline), segment_(segment) {}
-  Foot next(const Point2& point);
+  /// `steps` >= 1: about how many vertices farther on than last time; a good guess saves the walk.
+  Foot next(const Point2& point, std::size_t steps = 1);
   /// Whether a foot is held at an end of the polyline: the point lies beside nothing.
   bool beyond_end(const Foot& foot) const {
     return (foot.segment == 0 && foot.fraction <= 0.0) ||
@@ -83,6 +84,41 @@ class PolylineWalker {
   const Polyline& polyline_;
   std::size_t segment_;
 };
+
+// Where the polyline was made point by point beside what walks along it, its next vertex is always the near
+// one.
+inline bool PolylineWalker::beside_next_vertex(const Point2& point, Foot& foot) {
+  const std::size_t i = segment_ + 1;
+  if (i + 1 >= polyline_.size()) return false;
+  const Point2& vertex = polyline_[i];
+  const Point2 before = vertex - polyline_[i - 1], after = polyline_[i + 1] - vertex, offset = point - vertex;
+  const double ahead = offset.dot(after), behind = -offset.dot(before);
+  const double squared_after = after.squaredNorm(), squared_before = before.squaredNorm();
+  // Nearer to another vertex, a segment past that one may be the nearest: look around.
+  if (ahead > 0.5 * squared_after || behind > 0.5 * squared_before) return false;
+  double along = 0.0;  // squared, by Pythagoras
+  if (ahead > 0.0 && (behind <= 0.0 || ahead * ahead * squared_before > behind * behind * squared_after)) {
+    foot.segment = i;
+    foot.fraction = ahead / squared_after;
+    foot.point = vertex + foot.fraction * after;
+    along = ahead * foot.fraction;
+  } else {
+    const double back = behind > 0.0 ? behind / squared_before : 0.0;
+    foot.segment = i - 1;
+    foot.fraction = 1.0 - back;
+    foot.point = vertex - back * before;
+    along = back * std::max(0.0, behind);
+  }
+  foot.squared_distance = std::max(0.0, offset.squaredNorm() - along);  // on the polyline rounding may win
+  segment_ = i;
+  return true;
+}
+
+inline Foot PolylineWalker::next(const Point2& point, std::size_t steps) {
+  segment_ = std::min(segment_ + steps, polyline_.size() - 1) - 1;
+  Foot foot;
+  return beside_next_vertex(point, foot) ? foot : search(point);
+}
 
 double chord_length(const Polyline& points);
 

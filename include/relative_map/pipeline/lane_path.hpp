@@ -26,7 +26,7 @@ struct LanePath {
 /// the tangent at an end that it lies beyond. The search starts at the first point.
 void locate_vehicle(LanePath& lane);
 
-/// By the vehicle's place beside them.
+/// By the vehicle's place beside them; a lane that begins ahead by where its start lies beside the others.
 void sort_left_to_right(std::vector<LanePath>& lanes);
 
 Polyline positions_of(const PathPoints& points);
