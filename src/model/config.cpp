@@ -71,9 +71,10 @@ std::vector<std::string> PipelineConfig::validate() const {
                  "navigation_lane/max_lane_half_width", lane.max_lane_half_width);
   faults.range("navigation_lane/lane_marker_weight", lane.lane_marker_weight, 0.0, 1.0);
 
-  if (lane_fusion.method != "fixed_weight") {
-    faults.add("lane_fusion/method is '" + lane_fusion.method + "', but must be fixed_weight");
+  if (lane_fusion.method != "estimator" && lane_fusion.method != "fixed_weight") {
+    faults.add("lane_fusion/method is '" + lane_fusion.method + "', but must be estimator or fixed_weight");
   }
+  faults.range("lane_fusion/hold_time", lane_fusion.hold_time, 0.0, 60.0);
   faults.range("lane_fusion/fade_length", lane_fusion.fade_length, 10.0, 1e3);
 
   faults.positive("max_age/localization", max_age.localization);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "relative_map/pipeline/paint_samples.hpp"
+
 namespace relative_map::core {
 
 namespace {
@@ -13,11 +15,6 @@ constexpr double kStart = -2.0;       // [m] x of the first sample
 constexpr double kFadeLength = 30.0;  // [m] past view_range until the path runs straight
 constexpr double kWidthMargin = 1.5;  // a lane so much wider or narrower than the limits is no lane
 
-// Paint beyond these is not the vehicle's own lane's.
-constexpr double kFarthest = 10.0;     // [m] beside the vehicle
-constexpr double kSteepest = 5.0;      // [-] slope
-constexpr double kMaxCurvature = 0.2;  // [1/m]
-
 /// The curve that the path follows, and how far it may be believed.
 struct Guide {
   Cubic cubic;
@@ -25,36 +22,6 @@ struct Guide {
   double from = 0.0, to = 0.0;  ///< [m] x
   double left_half_width = 0.0, right_half_width = 0.0;
 };
-
-/// Whether a vehicle could follow the cubic from the first sample to `x_end`; not if a number is NaN.
-bool drivable(const Cubic& cubic, double x_end) {
-  if (!(std::abs(cubic.c0) <= kFarthest)) return false;
-  for (double x = kStart; x <= x_end; x += kStep) {
-    if (!(std::abs(cubic.slope(x)) <= kSteepest) || !(std::abs(cubic.kappa(x)) <= kMaxCurvature))
-      return false;
-  }
-  return true;
-}
-
-/// Why a marker does not count; none: it does.
-std::optional<std::string> fault_of(const LaneMarker& marker, const NavigationLaneParam& param) {
-  std::ostringstream fault;
-  if (!(marker.quality >= param.min_lane_marker_quality) || !(marker.quality > 0.0)) {
-    fault << "quality is " << marker.quality;
-  } else if (!std::isfinite(marker.view_range) ||
-             marker.view_range < param.min_view_range_to_use_lane_marker) {
-    fault << "view_range is " << marker.view_range << " m";
-  } else if (!(marker.longitude_start < marker.view_range) || !std::isfinite(marker.longitude_start)) {
-    fault << "longitude_start is " << marker.longitude_start << " m, and view_range " << marker.view_range
-          << " m";
-  } else if (!drivable(marker.cubic, std::min(marker.view_range, param.max_len_for_navigation_lane))) {
-    const Cubic& c = marker.cubic;
-    fault << "no vehicle could follow c0..c3 = " << c.c0 << ", " << c.c1 << ", " << c.c2 << ", " << c.c3;
-  } else {
-    return std::nullopt;
-  }
-  return fault.str();
-}
 
 Cubic mean_of(const LaneMarker& left, const LaneMarker& right) {
   const Cubic &l = left.cubic, &r = right.cubic;
@@ -146,16 +113,9 @@ void move_to_base(PathPoints& points, const Pose2& base_from_sensor) {
   }
 }
 
-}  // namespace
-
-std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& markers,
-                                                       const Pose2& base_from_sensor, double speed,
-                                                       const MapParam& map_param,
-                                                       const NavigationLaneParam& param) {
-  const std::variant<Guide, std::string> found = guide_of(markers, map_param, param);
-  if (const auto* reason = std::get_if<std::string>(&found)) return *reason;
-  const Guide& guide = std::get<Guide>(found);
-
+/// Along the guide, which is given in a frame that lies in the body as `base_from_sensor` says.
+MarkerPath follow(const Guide& guide, const Pose2& base_from_sensor, double speed,
+                  const NavigationLaneParam& param) {
   const double length = std::clamp(std::abs(speed) * param.ratio_navigation_lane_len_to_speed,
                                    param.min_len_for_navigation_lane, param.max_len_for_navigation_lane);
   const double seen = std::min(guide.to, length);
@@ -182,9 +142,26 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
   path.right_half_width = guide.right_half_width;
   locate_vehicle(path);
   path.remaining = path.points.back().s - path.s_at_vehicle;
+  return result;
+}
+
+}  // namespace
+
+std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& markers,
+                                                       const Pose2& base_from_sensor, double speed,
+                                                       const MapParam& map_param,
+                                                       const NavigationLaneParam& param) {
+  const std::variant<Guide, std::string> found = guide_of(markers, map_param, param);
+  if (const auto* reason = std::get_if<std::string>(&found)) return *reason;
+  MarkerPath result = follow(std::get<Guide>(found), base_from_sensor, speed, param);
   if (!fault_of(markers.left, param)) result.left_paint = markers.left.type;
   if (!fault_of(markers.right, param)) result.right_paint = markers.right.type;
   return result;
+}
+
+MarkerPath make_marker_path(const Cubic& centerline, double seen_to, double left_half_width,
+                            double right_half_width, double speed, const NavigationLaneParam& param) {
+  return follow({centerline, 0.0, 0.0, seen_to, left_half_width, right_half_width}, Pose2(), speed, param);
 }
 
 }  // namespace relative_map::core

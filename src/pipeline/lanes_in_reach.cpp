@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "relative_map/pipeline/lane_width.hpp"
 #include "relative_map/pipeline/navigation_line_window.hpp"
 
 namespace relative_map::core {
@@ -38,9 +37,9 @@ void LanesInReach::reset() {
   for (NavigationLineTracker& tracker : trackers_) tracker.reset();
 }
 
-std::vector<LanesInReach::Tracked> LanesInReach::track_all(const VehicleState& vehicle, double max_distance,
-                                                           std::vector<LineDrop>& drops) {
-  std::vector<Tracked> found;
+std::vector<TrackedLine> LanesInReach::track_all(const VehicleState& vehicle, double max_distance,
+                                                 std::vector<LineDrop>& drops) {
+  std::vector<TrackedLine> found;
   for (std::size_t i = 0; i < lines_->lines.size(); ++i) {
     const NavigationLine& line = lines_->lines[i];
     const auto tracked = trackers_[i].track(line, vehicle, max_distance);
@@ -53,9 +52,9 @@ std::vector<LanesInReach::Tracked> LanesInReach::track_all(const VehicleState& v
   return found;
 }
 
-std::variant<std::vector<LanePath>, Status> LanesInReach::find(const VehicleState& vehicle,
-                                                               const PipelineConfig& config,
-                                                               std::vector<std::string>& remarks) {
+std::variant<std::vector<TrackedLine>, Status> LanesInReach::track(const VehicleState& vehicle,
+                                                                   const PipelineConfig& config,
+                                                                   std::vector<std::string>& remarks) {
   if (!lines_) return Status{StatusCode::kNoNavigationLine, "no navigation line received yet"};
   if (lines_->lines.empty()) {
     Status status{StatusCode::kNoNavigationLine, "no usable navigation line"};
@@ -66,7 +65,7 @@ std::variant<std::vector<LanePath>, Status> LanesInReach::find(const VehicleStat
   }
 
   std::vector<LineDrop> drops;
-  std::vector<Tracked> tracked =
+  std::vector<TrackedLine> tracked =
       track_all(vehicle, config.navigation_lane.max_distance_to_navigation_line, drops);
   tell(drops, remarks);
   if (tracked.empty()) return nothing_left(drops);
@@ -74,21 +73,22 @@ std::variant<std::vector<LanePath>, Status> LanesInReach::find(const VehicleStat
     remarks.push_back(std::to_string(tracked.size()) + " lines are in reach: only the best " +
                       std::to_string(kMaxLanes) + " are used");
     std::sort(tracked.begin(), tracked.end(),
-              [](const Tracked& a, const Tracked& b) { return a.line->priority < b.line->priority; });
+              [](const TrackedLine& a, const TrackedLine& b) { return a.line->priority < b.line->priority; });
     tracked.resize(kMaxLanes);
   }
+  return tracked;
+}
 
+std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
+                                  const PipelineConfig& config) {
   std::vector<LanePath> lanes;
-  for (const Tracked& found : tracked) {
+  for (const TrackedLine& found : lines) {
     lanes.push_back(cut_window(*found.line, found.projection, vehicle.map_from_base,
                                config.navigation_lane.max_len_from_navigation_line));
     lanes.back().left_half_width = config.map_param.default_left_width;
     lanes.back().right_half_width = config.map_param.default_right_width;
   }
   sort_left_to_right(lanes);
-  for (std::string& remark : drop_narrow_lanes(lanes, config.footprint.half_width)) {
-    remarks.push_back(std::move(remark));
-  }
   return lanes;
 }
 

@@ -51,14 +51,6 @@ Status invalid(const std::string& field, double value) {
   return {StatusCode::kInvalidLocalization, sentence.str()};
 }
 
-/// Constant speed and yaw rate over `seconds`, which may be negative: the arc's chord at its mean heading.
-Pose2 carried_on(const VehicleState& state, double seconds) {
-  const double turn = state.yaw_rate * seconds;
-  const double half = 0.5 * turn;
-  const double chord = state.speed * seconds * (std::abs(half) > 1e-6 ? std::sin(half) / half : 1.0);
-  return state.map_from_base.to_parent(Pose2(chord * Point2(std::cos(half), std::sin(half)), turn));
-}
-
 }  // namespace
 
 Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& link_from_base) {
@@ -98,6 +90,13 @@ bool has_jumped(const VehicleState& before, const VehicleState& after) {
   const double moved = (after.map_from_base.position() - before.map_from_base.position()).norm();
   const double seconds = std::abs(to_seconds(after.stamp - before.stamp));
   return moved > kJump + 1.5 * seconds * std::max(std::abs(before.speed), std::abs(after.speed));
+}
+
+Pose2 carried_on(const VehicleState& state, double seconds) {
+  const double turn = state.yaw_rate * seconds;
+  const double half = 0.5 * turn;
+  const double chord = state.speed * seconds * (std::abs(half) > 1e-6 ? std::sin(half) / half : 1.0);
+  return state.map_from_base.to_parent(Pose2(chord * Point2(std::cos(half), std::sin(half)), turn));
 }
 
 void PoseBuffer::add(const VehicleState& state) {

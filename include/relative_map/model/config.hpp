@@ -29,8 +29,9 @@ struct NavigationLaneParam {
 };
 
 struct LaneFusionParam {
-  std::string method = "fixed_weight";
-  double fade_length = 50.0;  ///< [m] past view_range the correction fades out over this length
+  std::string method = "estimator";  ///< or "fixed_weight", as the original fuses
+  double fade_length = 50.0;  ///< [m] past view_range the correction fades out over it (fixed_weight)
+  double hold_time = 4.0;     ///< [s] that a lane from markers alone goes on without them (estimator)
 };
 
 /// How old the newest message of an input may be [s]; navigation is latched and does not age.
@@ -54,6 +55,7 @@ struct PipelineConfig {
   LaneFusionParam lane_fusion;
   MaxAgeParam max_age;
   Footprint footprint;
+  bool predict_to_tick = false;  ///< maps are for the tick's time, not for the newest pose's
   std::string base_frame = "base_link";  ///< maps are in this frame
   bool enable_cyclic_rerouting = true;
   bool generate_left_boundary = true;  ///< false: the outermost left boundary is marked virtual

@@ -28,4 +28,8 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
                                                        const MapParam& map_param,
                                                        const NavigationLaneParam& param);
 
+/// The same along a centerline in the body frame that was estimated from paint seen up to x = `seen_to` [m].
+MarkerPath make_marker_path(const Cubic& centerline, double seen_to, double left_half_width,
+                            double right_half_width, double speed, const NavigationLaneParam& param);
+
 }  // namespace relative_map::core

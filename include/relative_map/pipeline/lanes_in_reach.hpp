@@ -11,29 +11,34 @@
 
 namespace relative_map::core {
 
-/// Keeps the vehicle's place on every line, and cuts out those that it can be on.
+struct TrackedLine {
+  const NavigationLine* line;
+  LineProjection projection;
+};
+
+/// Keeps the vehicle's place on every line, and finds those that it can be on.
 class LanesInReach {
  public:
   void set_lines(std::shared_ptr<const NavigationLines> lines);
   /// Forgets the places, not the lines.
   void reset();
 
-  /// The windows of the lines in reach, left to right, none too near a better one for the vehicle; or why
-  /// there is none. Each line that drops out leaves a sentence in `remarks`; many of them share one.
-  std::variant<std::vector<LanePath>, Status> find(const VehicleState& vehicle, const PipelineConfig& config,
-                                                   std::vector<std::string>& remarks);
+  /// The lines in reach, or why there is none. Each line that drops out leaves a sentence in `remarks`; many
+  /// of them share one.
+  std::variant<std::vector<TrackedLine>, Status> track(const VehicleState& vehicle,
+                                                       const PipelineConfig& config,
+                                                       std::vector<std::string>& remarks);
 
  private:
-  struct Tracked {
-    const NavigationLine* line;
-    LineProjection projection;
-  };
-
-  std::vector<Tracked> track_all(const VehicleState& vehicle, double max_distance,
-                                 std::vector<LineDrop>& drops);
+  std::vector<TrackedLine> track_all(const VehicleState& vehicle, double max_distance,
+                                     std::vector<LineDrop>& drops);
 
   std::shared_ptr<const NavigationLines> lines_;
   std::vector<NavigationLineTracker> trackers_;  ///< one a line
 };
+
+/// The windows of lines in reach, left to right, in the body frame.
+std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
+                                  const PipelineConfig& config);
 
 }  // namespace relative_map::core

@@ -8,10 +8,13 @@
 
 #include "relative_map/model/config.hpp"
 #include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/image_queue.hpp"
 #include "relative_map/pipeline/input_check.hpp"
+#include "relative_map/pipeline/lane_estimator.hpp"
 #include "relative_map/pipeline/lane_marker_path.hpp"
 #include "relative_map/pipeline/lanes_in_reach.hpp"
 #include "relative_map/pipeline/map_builder.hpp"
+#include "relative_map/pipeline/marker_lane_estimator.hpp"
 #include "relative_map/pipeline/vehicle_state.hpp"
 
 namespace relative_map::core {
@@ -31,7 +34,7 @@ class RelativeMapPipeline {
   void set_localization(const Localization& link,
                         const std::optional<Eigen::Isometry3d>& link_from_base = std::nullopt);
   void set_chassis(const Chassis& chassis) { chassis_ = check_chassis(chassis); }
-  void set_lane_markers(const LaneMarkers& markers) { markers_ = markers; }
+  void set_lane_markers(const LaneMarkers& markers);
   /// Forgets all but configuration and lines, as after a jump of the clock.
   void reset();
 
@@ -47,15 +50,22 @@ class RelativeMapPipeline {
 
  private:
   std::variant<RelativeMap, Status> build(Time now);
+  std::variant<RelativeMap, Status> build_estimated(const VehicleState& vehicle, Time now);
+  std::variant<RelativeMap, Status> build_with_fixed_weight(const VehicleState& vehicle, Time now);
   std::variant<VehicleState, Status> vehicle_state(Time now);
   std::optional<Chassis> fresh_chassis(Time now) const;
   void add_remarks(const std::vector<std::string>& remarks);
+  std::variant<std::vector<TrackedLine>, Status> lines_in_reach(const VehicleState& vehicle);
+  std::vector<LanePath> cut_lanes(const std::vector<TrackedLine>& lines, const VehicleState& vehicle);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
   std::size_t choose_current(const std::vector<LanePath>& lanes) const;
-  FusionState fuse(const MarkerPath& markers, std::vector<LanePath>& lanes, std::size_t& current);
-  RelativeMap finish(std::vector<LanePath> lanes, std::size_t current,
-                     const std::optional<MarkerPath>& markers, FusionState fusion,
-                     const VehicleState& vehicle);
+  const TrackedLine& choose_line(const std::vector<TrackedLine>& lines) const;
+  void keep_room_beside(std::vector<LanePath>& lanes, std::size_t& current);
+  std::variant<RelativeMap, Status> lane_of_markers(const std::vector<ImageQueue::Image>& images,
+                                                    const VehicleState& vehicle, Status otherwise);
+  Status nothing(Status status) const;
+  RelativeMap finish(std::vector<LanePath> lanes, std::size_t current, const SeenPaint& paint,
+                     FusionState fusion, const VehicleState& vehicle);
 
   std::shared_ptr<const PipelineConfig> config_;
   LanesInReach lanes_in_reach_;
@@ -63,6 +73,9 @@ class RelativeMapPipeline {
   std::optional<Checked<Chassis>> chassis_;
   std::optional<LaneMarkers> markers_;
   PoseBuffer poses_;
+  ImageQueue images_;
+  LaneEstimator estimator_;
+  MarkerLaneEstimator marker_estimator_;
   std::string current_id_;  ///< of the last map
   std::uint32_t sequence_num_ = 0;
   std::vector<std::string> remarks_;

@@ -31,6 +31,9 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
 /// Whether the vehicle has moved by more than its speed explains: it was put elsewhere.
 bool has_jumped(const VehicleState& before, const VehicleState& after);
 
+/// Constant speed and yaw rate over `seconds` [s], which may be negative: the arc's chord at its mean heading.
+Pose2 carried_on(const VehicleState& state, double seconds);
+
 /// The latest poses, to look up where the vehicle was when an image was taken.
 class PoseBuffer {
  public:
@@ -40,6 +43,8 @@ class PoseBuffer {
   void add(const VehicleState& state);
   /// Interpolated between poses, carried on by speed and yaw rate a little beyond them; none further out.
   std::optional<Pose2> at(Time stamp) const;
+  /// With its yaw rate; there must be one.
+  const VehicleState& newest() const { return states_.back(); }
   void clear() { states_.clear(); }
 
  private:

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relative_map/model/config.hpp"
+#include "relative_map/pipeline/paint_samples.hpp"
+#include "relative_map/pipeline/vehicle_state.hpp"
+
+namespace relative_map::core {
+
+/// Keeps the images that came since the last tick, and carries their paint to where the vehicle is now, by
+/// odometry: localization's noise and jumps do not move paint.
+class ImageQueue {
+ public:
+  struct Image {
+    Time stamp{};
+    SeenSides sides;
+  };
+
+  void move(const VehicleState& localized);
+  void add(const LaneMarkers& markers);
+  void clear() { *this = ImageQueue(); }
+
+  /// The images of use, oldest first, as seen from the pose of time `pose_stamp`; the queue is empty then.
+  /// What is of no use leaves a sentence.
+  std::vector<Image> take(Time now, Time pose_stamp, const PipelineConfig& config,
+                          std::vector<std::string>& remarks);
+
+ private:
+  std::optional<Image> look_at(const LaneMarkers& markers, Time pose_stamp, const PipelineConfig& config,
+                               std::vector<std::string>& remarks) const;
+
+  std::vector<LaneMarkers> waiting_;
+  PoseBuffer odometry_;  ///< poses by speed and yaw rate alone, from an origin of its own
+  std::optional<VehicleState> last_;
+};
+
+}  // namespace relative_map::core

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/kalman_filter.hpp"
+#include "relative_map/pipeline/lane_path.hpp"
+#include "relative_map/pipeline/navigation_line_tracker.hpp"
+#include "relative_map/pipeline/offset_profile.hpp"
+#include "relative_map/pipeline/paint_samples.hpp"
+
+namespace relative_map::core {
+
+/// Estimates where the vehicle is beside its line, from odometry, localization and paint.
+///
+/// A Kalman filter over the vehicle's true pose, localization's bias, the half widths of the lane and the
+/// offset of the lane from the line along it (OffsetProfile). Odometry moves the pose. Localization measures
+/// pose plus bias: what is white in it averages out, and what stays becomes bias as soon as paint tells the
+/// two apart. Paint measures the distance of its points from the line less the offset and the half width. On
+/// a straight that says nothing about the way along the line; where the line bends, it does.
+class LaneEstimator {
+ public:
+  /// Odometry up to `localized`, and what localization says there.
+  void move(const VehicleState& localized);
+  /// Paint beside the line that the vehicle is on. Returns a sentence for each side that was ignored.
+  std::vector<std::string> see(const SeenSides& sides, const NavigationLine& line,
+                               const LineProjection& projection, Time stamp);
+  /// Forgets everything: localization is believed as it is.
+  void reset() { *this = LaneEstimator(); }
+
+  /// Whether paint has told anything that is still worth something.
+  bool informed() const { return last_paint_.has_value(); }
+  /// The time of the newest paint that counted.
+  std::optional<Time> last_paint() const { return last_paint_; }
+  /// [m] how far ahead of the vehicle that paint reaches.
+  double paint_range() const { return paint_range_; }
+
+  BoundaryType left_paint() const { return left_paint_; }
+  BoundaryType right_paint() const { return right_paint_; }
+
+  /// Where the vehicle is: `localized` without what is known to be wrong with it.
+  VehicleState corrected(const VehicleState& localized) const;
+  /// Moves the current lane to where it is beside its line, and sets its half widths.
+  /// Returns whether it did: not without anything known of this lane.
+  bool apply(LanePath& lane) const;
+  /// Half widths of the lane [m], where nothing of it was seen yet.
+  void expect_half_width(double half_width);
+  FusionState state(const LineProjection& projection, double heading) const;
+
+ private:
+  enum Index { kX, kY, kHeading, kBiasX, kBiasY, kBiasHeading, kLeft, kRight, kFirstKnot };
+  static constexpr int kStates = kFirstKnot + OffsetProfile::kKnots;
+  using Filter = KalmanFilter<kStates>;
+  template <int Rows>
+  using Jacobian = Eigen::Matrix<double, Rows, kStates>;
+  /// Of one marker, seen as one side of the lane.
+  struct Measurement {
+    Eigen::Matrix<double, kPaintSamples, 1> innovation;  ///< [m]
+    Jacobian<kPaintSamples> jacobian;
+    Eigen::Matrix<double, kPaintSamples, kPaintSamples> covariance;
+    double squared_distance = 0.0;
+
+    Eigen::Matrix<double, kPaintSamples, 1> weights() const;  ///< of the samples in their mean
+    double mean_offset() const { return weights().dot(innovation); }
+  };
+
+  void start(const VehicleState& localized);
+  void follow_odometry(const VehicleState& to);
+  void follow_localization(const VehicleState& localized);
+  void keep_profile_beside(const NavigationLine& line, const LineProjection& projection);
+  std::optional<Measurement> measure(const PaintSamples& paint, Index side, const NavigationLine& line,
+                                     std::size_t vertex) const;
+  bool fits(const Measurement& measurement) const;
+  double mean_stddev(const Measurement& measurement) const;
+  /// Takes the bias for less sure when both borders have been saying the same for long.
+  void reconsider(const std::optional<Measurement>& first, const std::optional<Measurement>& second, Time stamp);
+
+  Filter filter_;
+  std::optional<VehicleState> last_;  ///< as localized
+  Point2 origin_ = Point2::Zero();    ///< [m] map coordinates that kX and kY are relative to
+  std::string line_id_;
+  double line_s_ = 0.0;        ///< [m] of the vehicle along the line, laps counted on
+  double first_knot_s_ = 0.0;  ///< [m] the same for the first knot
+  double last_projected_s_ = 0.0;
+  double half_width_ = 1.75;  ///< [m] expected where paint tells nothing
+  std::optional<Time> last_paint_, disagreeing_since_;
+  double paint_range_ = 0.0;
+  BoundaryType left_paint_ = BoundaryType::kUnknown, right_paint_ = BoundaryType::kUnknown;
+};
+
+}  // namespace relative_map::core

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace relative_map::core {
+
+/// The lateral offset of a lane from its recorded line, by s: a cubic B-spline over evenly spaced knots, so
+/// that heading and curvature are smooth. What it may be is a Gaussian process (Matern 3/2): about as large
+/// as a driver sways, and alike over tens of metres.
+class OffsetProfile {
+ public:
+  static constexpr int kKnots = 10;
+  static constexpr double kSpacing = 10.0;  ///< [m] between knots
+  using Knots = Eigen::Matrix<double, kKnots, 1>;
+  using Covariance = Eigen::Matrix<double, kKnots, kKnots>;
+
+  /// Of knots of which nothing was seen yet [m^2].
+  static Covariance prior();
+  /// Share of each knot in the offset at `place`, in knots from the first one; past the ends the process
+  /// goes on by itself and fades to zero.
+  static Eigen::Matrix<double, 1, kKnots> shares(double place);
+  /// A knot beyond the end of two others (`near` the end one): its expectation, and its variance [m^2].
+  struct Next {
+    double from_near, from_far;  ///< shares of the two
+    double variance;
+  };
+  static Next next();
+
+  explicit OffsetProfile(const Knots& knots);
+  /// [m] left positive, at `place` in knots from the first one.
+  double at(double place) const;
+  bool is_zero() const { return zero_; }
+
+ private:
+  static constexpr int kBeyond = 12;  ///< knots past an end that are not zero yet
+
+  Eigen::Matrix<double, kKnots + 2 * kBeyond, 1> knots_;
+  bool zero_;
+};
+
+}  // namespace relative_map::core

@@ -1,0 +1,124 @@
+#include "relative_map/pipeline/marker_lane_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "relative_map/pipeline/half_width_model.hpp"
+
+namespace relative_map::core {
+
+namespace {
+
+// Standard deviations at the start ...
+constexpr double kOffset0 = 2.0;          // [m]
+constexpr double kSlope0 = 0.3;           // [-]
+constexpr double kCurvature0 = 0.05;      // [1/m]
+constexpr double kCurvatureRate0 = 2e-3;  // [1/m^2]
+// ... and of the random walks, by the root of the way [m] or the time [s].
+constexpr double kCurvatureRateWalk = 4e-5;  // [1/m^2] by way
+constexpr double kCurvatureWalk = 2e-4;      // [1/m] by way
+constexpr double kHeadingWalk = 0.002;       // [rad] by time
+constexpr double kSlipWalk = 0.02;           // [m] by time
+constexpr double kCurvatureRateLength = 60.0;  // [m] over which a change of curvature ends
+constexpr double kGate = 30.0;               // squared, in standard deviations
+
+}  // namespace
+
+void MarkerLaneEstimator::start(double half_width) {
+  Filter::State x = x.Zero();
+  x[kLeft] = x[kRight] = half_width;
+  Filter::State sigma;
+  sigma << kOffset0, kSlope0, kCurvature0, kCurvatureRate0, 0.0, 0.0;
+  Filter::Covariance p = sigma.cwiseAbs2().asDiagonal();
+  p.block<2, 2>(kLeft, kLeft) = HalfWidthModel::unknown();
+  filter_ = Filter(x, p);
+}
+
+void MarkerLaneEstimator::move(const VehicleState& to) {
+  if (last_ && (has_jumped(*last_, to) || to.stamp <= last_->stamp)) reset();
+  if (!last_ || !last_paint_) {
+    last_ = to;
+    return;
+  }
+  const double dt = to_seconds(to.stamp - last_->stamp);
+  const double d = 0.5 * (last_->speed + to.speed) * dt, turn = 0.5 * (last_->yaw_rate + to.yaw_rate) * dt;
+  last_ = to;
+  Filter::Covariance f = f.Identity(), q = q.Zero();
+  f.block<4, 4>(0, 0) << 1.0, d, d * d / 2.0, d * d * d / 6.0,  //
+      0.0, 1.0, d, d * d / 2.0,                                 //
+      0.0, 0.0, 1.0, d,                                         //
+      0.0, 0.0, 0.0, std::exp(-std::abs(d) / kCurvatureRateLength);
+  const double way = std::abs(d);
+  q(kOffset, kOffset) = kSlipWalk * kSlipWalk * dt;
+  q(kSlope, kSlope) = kHeadingWalk * kHeadingWalk * dt;
+  q(kCurvature, kCurvature) = kCurvatureWalk * kCurvatureWalk * way;
+  q(kCurvatureRate, kCurvatureRate) = kCurvatureRateWalk * kCurvatureRateWalk * way;
+  f.block<2, 2>(kLeft, kLeft) = HalfWidthModel::transition(way);
+  q.block<2, 2>(kLeft, kLeft) = HalfWidthModel::noise(way);
+  Filter::State turned = turned.Zero();
+  turned[kSlope] = -turn;
+  filter_.predict(f, Filter::Covariance::Identity(), turned, q);
+  seen_to_ -= d;
+}
+
+MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples& paint, Index side) const {
+  Measurement result;
+  const Cubic center = centerline();
+  const double sign = side == kLeft ? 1.0 : -1.0;
+  for (int i = 0; i < kPaintSamples; ++i) {
+    const Point2& point = paint.points[static_cast<std::size_t>(i)];
+    const double x = point.x(), aslant = std::hypot(1.0, center.slope(x));
+    auto row = result.jacobian.row(i);
+    row << 1.0, x, x * x / 2.0, x * x * x / 6.0, 0.0, 0.0;
+    row[side] = sign * aslant;
+    result.innovation[i] = point.y() - row.dot(filter_.state());
+  }
+  return result;
+}
+
+std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double half_width, Time stamp) {
+  std::vector<std::string> ignored;
+  if (!last_paint_) start(half_width);
+  struct Seen {
+    Index side;
+    const PaintSamples* paint;
+    const char* name;
+    double distance;
+  };
+  std::vector<Seen> seen;
+  if (sides.left) seen.push_back({kLeft, &*sides.left, "left", 0.0});
+  if (sides.right) seen.push_back({kRight, &*sides.right, "right", 0.0});
+  const auto distance_of = [&](const Seen& one) {
+    const Measurement m = measure(*one.paint, one.side);
+    return filter_.squared_distance(m.innovation, m.jacobian, one.paint->covariance);
+  };
+  for (Seen& one : seen) one.distance = distance_of(one);
+  if (seen.size() == 2 && seen[1].distance < seen[0].distance) std::swap(seen[0], seen[1]);
+  bool any = false;
+  for (Seen& one : seen) {
+    if (any) one.distance = distance_of(one);
+    if (one.distance > kGate) {
+      std::ostringstream reason;
+      reason.precision(2);
+      reason << one.name << " is ignored: it is not where this lane's paint is expected";
+      ignored.push_back(reason.str());
+      continue;
+    }
+    const Measurement m = measure(*one.paint, one.side);
+    filter_.correct(m.innovation, m.jacobian, one.paint->covariance);
+    if (!any) left_paint_ = right_paint_ = BoundaryType::kUnknown;
+    (one.side == kLeft ? left_paint_ : right_paint_) = one.paint->type;
+    seen_to_ = any ? std::max(seen_to_, one.paint->to) : one.paint->to;
+    any = true;
+  }
+  if (any) last_paint_ = stamp;
+  return ignored;
+}
+
+Cubic MarkerLaneEstimator::centerline() const {
+  const Filter::State& x = filter_.state();
+  return {x[kOffset], x[kSlope], x[kCurvature] / 2.0, x[kCurvatureRate] / 6.0};
+}
+
+}  // namespace relative_map::core

@@ -1,0 +1,91 @@
+#include "relative_map/pipeline/offset_profile.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace relative_map::core {
+
+namespace {
+
+constexpr double kStddev = 0.10;  // [m]
+constexpr double kLength = 25.0;  // [m] over which offsets are alike
+
+double kernel(double distance) {
+  const double d = std::abs(distance) / kLength;
+  return kStddev * kStddev * (1.0 + d) * std::exp(-d);
+}
+
+/// Of the uniform cubic B-spline, `distance` knots from its middle.
+double basis(double distance) {
+  const double d = std::abs(distance);
+  if (d >= 2.0) return 0.0;
+  if (d >= 1.0) return (2.0 - d) * (2.0 - d) * (2.0 - d) / 6.0;
+  return 2.0 / 3.0 - d * d + 0.5 * d * d * d;
+}
+
+}  // namespace
+
+OffsetProfile::Next OffsetProfile::next() {
+  const double k0 = kernel(0.0), k1 = kernel(OffsetProfile::kSpacing), k2 = kernel(2.0 * OffsetProfile::kSpacing);
+  Eigen::Matrix2d known;
+  known << k0, k1, k1, k0;
+  const Eigen::Vector2d cross(k1, k2), shares = known.inverse() * cross;
+  return {shares[0], shares[1], k0 - cross.dot(shares)};
+}
+
+OffsetProfile::Covariance OffsetProfile::prior() {
+  Covariance covariance;
+  for (int i = 0; i < kKnots; ++i) {
+    for (int j = 0; j < kKnots; ++j) covariance(i, j) = kernel(kSpacing * (i - j));
+  }
+  return covariance;
+}
+
+Eigen::Matrix<double, 1, OffsetProfile::kKnots> OffsetProfile::shares(double place) {
+  Eigen::Matrix<double, 1, kKnots> row = Eigen::Matrix<double, 1, kKnots>::Zero();
+  const Next step = next();
+  const int first = static_cast<int>(std::floor(place)) - 1;
+  for (int knot = first; knot < first + 4; ++knot) {
+    const double share = basis(place - knot);
+    if (knot >= 0 && knot < kKnots) {
+      row[knot] += share;
+      continue;
+    }
+    const bool ahead = knot >= kKnots;
+    const int steps = ahead ? knot - kKnots + 1 : -knot;
+    if (steps > kBeyond) continue;
+    // The share of the two end knots in the one that many steps past them.
+    double near = 1.0, far = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      const double before = near;
+      near = step.from_near * before + far;
+      far = step.from_far * before;
+    }
+    row[ahead ? kKnots - 1 : 0] += share * near;
+    row[ahead ? kKnots - 2 : 1] += share * far;
+  }
+  return row;
+}
+
+OffsetProfile::OffsetProfile(const Knots& knots) : zero_(knots.isZero(0.0)) {
+  knots_.segment<kKnots>(kBeyond) = knots;
+  const Next step = next();
+  for (int i = kBeyond - 1; i >= 0; --i) {
+    knots_[i] = step.from_near * knots_[i + 1] + step.from_far * knots_[i + 2];
+  }
+  for (int i = kBeyond + kKnots; i < knots_.size(); ++i) {
+    knots_[i] = step.from_near * knots_[i - 1] + step.from_far * knots_[i - 2];
+  }
+}
+
+double OffsetProfile::at(double place) const {
+  const int first = static_cast<int>(std::floor(place)) - 1 + kBeyond;
+  double offset = 0.0;
+  for (int knot = std::max(0, first); knot < std::min<int>(first + 4, knots_.size()); ++knot) {
+    offset += basis(place - (knot - kBeyond)) * knots_[knot];
+  }
+  return offset;
+}
+
+}  // namespace relative_map::core
