@@ -4,30 +4,38 @@
 #include <algorithm>
 #include <cmath>
 
+#include "relative_map/simulation/smooth_step.hpp"
+
 namespace relative_map::core {
 
 namespace {
 
-constexpr double kSpacing = 1.0;        // [m]
-constexpr double kMaxTurnCosine = 0.7;  // 45 degrees
-constexpr double kMaxResidual = 0.05;   // [m] of a cubic that follows the paint
+constexpr double kSpacing = 1.0;  // [m]
 
-bool follows(const Cubic& cubic, const Polyline& points) {
+bool follows(const Cubic& cubic, const Polyline& points, double max_residual) {
   return std::all_of(points.begin(), points.end(), [&](const Point2& point) {
-    return std::abs(cubic.value(point.x()) - point.y()) <= kMaxResidual;
+    return std::abs(cubic.value(point.x()) - point.y()) <= max_residual;
   });
 }
 
 }  // namespace
 
-Polyline visible_paint(const DrivePath& path, double s, double l, const Pose2& base, double view_range) {
+double PaintLine::l_at(double s) const {
+  const double outside = std::max({0.0, from_s - s, s - to_s});
+  if (shift == 0.0 || outside >= ramp) return l;
+  const double t = 1.0 - outside / ramp;
+  return l + shift * smooth_step(t).value;
+}
+
+Polyline visible_paint(const DrivePath& path, double s, std::size_t vertex, const PaintLine& line,
+                       const Pose2& base, const Sight& sight) {
   Polyline seen;
-  std::size_t vertex = 0;
+  const double min_cosine = std::cos(sight.max_turn);
   for (double ahead = 0.0; path.ends == Ends::kClosed || s + ahead <= path.length(); ahead += kSpacing) {
     const PathPoint point = interpolate(path.points, path.hold(s + ahead), vertex);
-    if (point.direction.dot(base.forward()) < kMaxTurnCosine) break;
-    seen.push_back(base.to_local(point.position + l * left_of(point.direction)));
-    if (seen.back().x() > view_range) break;
+    if (point.direction.dot(base.forward()) < min_cosine) break;
+    seen.push_back(base.to_local(point.position + line.l_at(point.s) * left_of(point.direction)));
+    if (seen.back().x() > sight.range) break;
   }
   return seen;
 }
@@ -46,10 +54,10 @@ Cubic fit_cubic(const Polyline& points) {
   return {c[0], c[1] / scale, c[2] / (scale * scale), c[3] / (scale * scale * scale)};
 }
 
-FittedPaint fit_paint(Polyline points) {
+FittedPaint fit_paint(Polyline points, double max_residual) {
   while (points.size() >= 4) {
     const Cubic cubic = fit_cubic(points);
-    if (follows(cubic, points)) return {cubic, points.back().x()};
+    if (follows(cubic, points, max_residual)) return {cubic, points.back().x()};
     points.resize(points.size() - 1 - points.size() / 20);  // fine steps: the range should not jump
   }
   return {};

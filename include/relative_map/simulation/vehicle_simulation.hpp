@@ -7,7 +7,11 @@
 
 #include "relative_map/model/inputs.hpp"
 #include "relative_map/simulation/drive_path.hpp"
+#include "relative_map/simulation/error_param.hpp"
+#include "relative_map/simulation/localization_errors.hpp"
+#include "relative_map/simulation/marker_errors.hpp"
 #include "relative_map/simulation/noise.hpp"
+#include "relative_map/simulation/paint.hpp"
 #include "relative_map/simulation/speed_profile.hpp"
 #include "relative_map/simulation/wander.hpp"
 
@@ -20,15 +24,34 @@ struct NoiseParam {
   double chassis_speed = 0.02;          ///< [m/s]
   double marker_c0 = 0.02;              ///< [m]
   double marker_c1 = 0.001;             ///< [-]
+  double marker_c2 = 0.0;               ///< [1/m]
+  double marker_c3 = 0.0;               ///< [1/m^2]
+  double yaw_rate = 0.0;                ///< [rad/s]
 };
 
-/// The paint beside the lane that is driven on, and how the camera sees it.
+/// The paint of the road that is driven on, and how the camera sees it.
 struct PaintParam {
   double lane_half_width = 1.75;  ///< [m]
   double view_range = 50.0;       ///< [m]
   double quality = 0.9;           ///< [0, 1] of markers that are seen
   BoundaryType left_type = BoundaryType::kDottedWhite;
   BoundaryType right_type = BoundaryType::kDottedWhite;
+  std::vector<PaintLine> lines;  ///< from left to right; none: the two at lane_half_width
+  double max_turn = 0.78;        ///< [rad] by which the road may turn before it is out of sight
+  double max_residual = 0.05;    ///< [m] of the cubics; where they can't follow the paint they end
+};
+
+/// Moves the vehicle sideways for good.
+struct LaneChange {
+  double start = 0.0;     ///< [m] of distance driven along the line
+  double length = 100.0;  ///< [m]
+  double shift = 0.0;     ///< [m] left positive
+};
+
+/// The driver's wish from a time on.
+struct SpeedChange {
+  double time = 0.0;   ///< [s]
+  double speed = 0.0;  ///< [m/s] negative: backwards
 };
 
 struct VehicleSimulationConfig {
@@ -36,9 +59,13 @@ struct VehicleSimulationConfig {
   double start_s = 0.0;             ///< [m] along the line
   double wander = 0.2;              ///< [m] greatest lateral offset from the line
   double wander_wavelength = 80.0;  ///< [m] of the slowest sway
+  double offset = 0.0;              ///< [m] to the left of the line, about which the vehicle wanders
+  std::vector<LaneChange> lane_changes;
+  std::vector<SpeedChange> speed_changes;  ///< by rising time; before: SpeedParam::max_speed
   SpeedParam speed;
   PaintParam paint;
   NoiseParam noise;
+  ErrorParam errors;
 
   /// Every fault as one sentence that names the parameter and its value; empty: fit to run with.
   std::vector<std::string> validate() const;
@@ -61,7 +88,7 @@ class VehicleSimulation {
   // The truth.
   Time time() const { return time_; }  ///< since construction
   Pose2 map_from_base() const { return {path_.origin + pose_.position(), pose_.heading()}; }
-  double speed() const { return speed_; }        ///< [m/s]
+  double speed() const { return speed_; }        ///< [m/s] negative: backwards
   double yaw_rate() const { return yaw_rate_; }  ///< [rad/s]
   double s() const { return s_; }                ///< [m] along the line
   double l() const { return l_; }                ///< [m] to the left of the line
@@ -71,21 +98,28 @@ class VehicleSimulation {
   Localization measure_localization();
   Chassis measure_chassis();
   /// Cubics fitted to the paint as it is seen from the true pose. Where less of it than 5 m is left to see,
-  /// the marker has quality 0.
+  /// the marker has quality 0. Left and right is the nearest paint on either side.
   LaneMarkers measure_lane_markers();
+  /// From the image that was measured last to its message.
+  Time marker_latency() const { return marker_latency_; }
 
  private:
   void advance(double dt);
   void place();
-  LaneMarker measure_marker(double l, BoundaryType type);
+  double wished_speed() const;
+  LaneMarker measure_marker(const PaintLine& line, double view_range) const;
 
   VehicleSimulationConfig config_;
   DrivePath path_;
   SpeedProfile speed_profile_;
   Wander wander_;
-  NoiseSource localization_noise_, chassis_noise_, marker_noise_;
+  NoiseSource localization_noise_, chassis_noise_;
+  LocalizationErrors localization_errors_;
+  MarkerErrors marker_errors_;
+  double speed_scale_;  ///< [-] that the chassis measures with
 
   Time time_{};
+  Time marker_latency_{};
   double s_ = 0.0;             ///< [m]
   double driven_ = 0.0;        ///< [m] along the line, laps included
   std::size_t vertex_ = 0;     ///< of the path, at or before s_

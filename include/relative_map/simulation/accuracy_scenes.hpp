@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "relative_map/model/config.hpp"
+#include "relative_map/simulation/true_road.hpp"
+#include "relative_map/simulation/vehicle_simulation.hpp"
+
+namespace relative_map::core {
+
+enum class SceneGroup { kWithLine, kDrifting, kMarkersAlone, kPerfect };
+
+/// A drive whose truth is known.
+struct AccuracyScene {
+  std::string name;
+  SceneGroup group = SceneGroup::kWithLine;
+  RecordedLine reference;  ///< the road's reference curve, finely sampled
+  std::vector<TrueLane> lanes;
+  std::vector<RecordedLine> lines;  ///< as recorded: with their errors
+  VehicleSimulationConfig vehicle;  ///< drives along `reference`
+  LaneSource lane_source = LaneSource::kOfflineGenerated;
+  double duration = 90.0;  ///< [s]
+};
+
+std::vector<std::string> accuracy_scene_names();
+
+/// The seed gives the road's shape and all errors, which are `scale` times as large as usual.
+/// Throws std::invalid_argument if there is no scene of that name.
+AccuracyScene make_accuracy_scene(const std::string& name, std::uint64_t seed, double scale = 1.0);
+
+/// The errors of localization, recording and camera that are usual on the road, `scale` times as large.
+/// Rates, delays and durations are not scaled.
+void set_usual_errors(VehicleSimulationConfig& config, double scale);
+
+}  // namespace relative_map::core

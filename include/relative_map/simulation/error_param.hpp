@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace relative_map::core {
+
+// Errors that last, on top of the white noise of NoiseParam; all of them are off by default.
+
+struct LocalizationErrorParam {
+  double bias = 0.0;                ///< [m] standard deviation in map x and in map y
+  double bias_time = 30.0;          ///< [s] over which a bias is forgotten
+  double heading_bias = 0.0;        ///< [rad] standard deviation
+  double heading_bias_time = 30.0;  ///< [s]
+  double drift = 0.0;               ///< [m] reached after drift_time, in a direction that the seed gives
+  double drift_time = 100.0;        ///< [s]
+  double yaw_rate_bias = 0.0;       ///< [rad/s] greatest; constant over a drive
+};
+
+struct ChassisErrorParam {
+  double speed_scale = 0.0;  ///< [-] greatest share of the speed by which it is wrong; constant over a drive
+};
+
+/// Of a recorded line, sideways.
+struct RecordingErrorParam {
+  double offset = 0.0;          ///< [m] standard deviation of what is the same all along
+  double wander = 0.0;          ///< [m] standard deviation of what changes along the line
+  double wander_length = 60.0;  ///< [m] over which it does
+};
+
+/// Time that passes between two episodes of a fault, and how long each lasts.
+struct EpisodeParam {
+  double interval = 0.0;  ///< [s] mean time from one's end to the next one's start; 0: there are none
+  double min_duration = 0.0, max_duration = 0.0;  ///< [s]
+};
+
+struct MarkerErrorParam {
+  double correlated_share = 0.0;   ///< [0, 1] of the noise's variance that lasts from image to image ...
+  double correlation_time = 1.0;   ///< ... for so long [s]
+  double view_range_change = 0.0;  ///< [m] standard deviation of the view range about PaintParam::view_range
+  double view_range_time = 10.0;   ///< [s] over which it changes
+  double min_view_range = 25.0, max_view_range = 70.0;  ///< [m] limits of the changing view range
+  EpisodeParam dropout{0.0, 0.2, 3.0};                  ///< one side, or both, is not seen
+  EpisodeParam outlier{0.0, 0.1, 1.0};    ///< one side, or both, is taken for other paint, at full quality
+  double min_jump = 1.5, max_jump = 3.5;  ///< [m] between the paint and that which it is taken for
+  double min_latency = 0.0, max_latency = 0.0;  ///< [s] from the image to the message
+};
+
+struct ErrorParam {
+  LocalizationErrorParam localization;
+  ChassisErrorParam chassis;
+  RecordingErrorParam recording;
+  MarkerErrorParam markers;
+
+  /// Every fault as one sentence that names the parameter and its value.
+  std::vector<std::string> validate() const;
+};
+
+/// Appends a sentence if `value` does not lie in [low, high].
+void check_range(const std::string& name, double value, double low, double high,
+                 std::vector<std::string>& faults);
+
+}  // namespace relative_map::core

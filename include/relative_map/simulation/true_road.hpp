@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "relative_map/simulation/drive_path.hpp"
+#include "relative_map/simulation/paint.hpp"
+
+namespace relative_map::core {
+
+/// A lane as it really is, between two of the road's lines of paint.
+struct TrueLane {
+  double l = 0.0;           ///< [m] of its center, to the left of the road's reference curve
+  double half_width = 0.0;  ///< [m] where the paint is in its place
+  std::size_t left_paint = 0, right_paint = 0;
+};
+
+/// A place on a road, in the frame of its path.
+struct RoadPlace {
+  double s = 0.0;  ///< [m] along the reference curve
+  Point2 position = Point2::Zero();
+  Point2 direction = Point2::UnitX();
+};
+
+/// What maps are measured against: a reference curve, and lanes and paint that run beside it.
+struct TrueRoad {
+  DrivePath path;
+  std::vector<TrueLane> lanes;   ///< left to right
+  std::vector<PaintLine> paint;  ///< left to right
+
+  RoadPlace at(double s, double l) const;
+  /// The places on the center of a lane at rising distances [m] along it from where it passes s; those past
+  /// the end of the road are missing.
+  std::vector<RoadPlace> ahead(const TrueLane& lane, double s, const std::vector<double>& distances) const;
+  /// The lanes that a vehicle l [m] beside the reference curve may be said to be in: one, or near the line
+  /// between two of them, both. By index.
+  std::vector<std::size_t> lanes_at(double l) const;
+};
+
+}  // namespace relative_map::core

@@ -1,0 +1,53 @@
+#include "relative_map/simulation/error_param.hpp"
+
+#include <sstream>
+
+namespace relative_map::core {
+
+namespace {
+
+void check_episode(const std::string& name, const EpisodeParam& episode, std::vector<std::string>& faults) {
+  check_range(name + "_interval", episode.interval, 0.0, 1e6, faults);
+  check_range(name + "_min_duration", episode.min_duration, 0.0, 1e3, faults);
+  check_range(name + "_max_duration", episode.max_duration, episode.min_duration, 1e3, faults);
+}
+
+}  // namespace
+
+void check_range(const std::string& name, double value, double low, double high,
+                 std::vector<std::string>& faults) {
+  if (value >= low && value <= high) return;  // NaN never is
+  std::ostringstream fault;
+  fault << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
+  faults.push_back(fault.str());
+}
+
+std::vector<std::string> ErrorParam::validate() const {
+  std::vector<std::string> faults;
+  check_range("errors/localization_bias", localization.bias, 0.0, 100.0, faults);
+  check_range("errors/localization_bias_time", localization.bias_time, 0.01, 1e6, faults);
+  check_range("errors/heading_bias", localization.heading_bias, 0.0, 1.0, faults);
+  check_range("errors/heading_bias_time", localization.heading_bias_time, 0.01, 1e6, faults);
+  check_range("errors/drift", localization.drift, 0.0, 1000.0, faults);
+  check_range("errors/drift_time", localization.drift_time, 1.0, 1e6, faults);
+  check_range("errors/yaw_rate_bias", localization.yaw_rate_bias, 0.0, 1.0, faults);
+  check_range("errors/speed_scale", chassis.speed_scale, 0.0, 0.5, faults);
+  check_range("errors/recording_offset", recording.offset, 0.0, 10.0, faults);
+  check_range("errors/recording_wander", recording.wander, 0.0, 10.0, faults);
+  check_range("errors/recording_wander_length", recording.wander_length, 5.0, 1e6, faults);
+  check_range("errors/marker_correlated_share", markers.correlated_share, 0.0, 1.0, faults);
+  check_range("errors/marker_correlation_time", markers.correlation_time, 0.01, 1e6, faults);
+  check_range("errors/view_range_change", markers.view_range_change, 0.0, 300.0, faults);
+  check_range("errors/view_range_time", markers.view_range_time, 0.01, 1e6, faults);
+  check_range("errors/min_view_range", markers.min_view_range, 0.0, 300.0, faults);
+  check_range("errors/max_view_range", markers.max_view_range, markers.min_view_range, 300.0, faults);
+  check_episode("errors/dropout", markers.dropout, faults);
+  check_episode("errors/outlier", markers.outlier, faults);
+  check_range("errors/min_jump", markers.min_jump, 0.0, 100.0, faults);
+  check_range("errors/max_jump", markers.max_jump, markers.min_jump, 100.0, faults);
+  check_range("errors/min_latency", markers.min_latency, 0.0, 10.0, faults);
+  check_range("errors/max_latency", markers.max_latency, markers.min_latency, 10.0, faults);
+  return faults;
+}
+
+}  // namespace relative_map::core

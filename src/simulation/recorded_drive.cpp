@@ -1,0 +1,90 @@
+#include "relative_map/simulation/recorded_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "relative_map/simulation/random_process.hpp"
+
+namespace relative_map::core {
+
+namespace {
+
+constexpr Time kStart = std::chrono::seconds(1000);
+constexpr Time kTruthPeriod = std::chrono::milliseconds(10);
+
+/// Something that is done again and again.
+struct Beat {
+  Time period;
+  Time due;
+};
+
+Beat random_beat(std::mt19937_64& engine, double low_rate, double high_rate) {
+  std::uniform_real_distribution<double> rate(low_rate, high_rate), phase(0.0, 1.0);
+  const double period = 1.0 / rate(engine);
+  return {from_seconds(period), from_seconds(period * phase(engine))};
+}
+
+}  // namespace
+
+TruePose RecordedDrive::truth_at(Time stamp) const {
+  const double index = to_seconds(stamp - start) / to_seconds(kTruthPeriod);
+  const double last = static_cast<double>(truth.size() - 1);
+  const auto i = static_cast<std::size_t>(std::clamp(std::floor(index), 0.0, last - 1.0));
+  const TruePose &a = truth[i], &b = truth[i + 1];
+  const double weight = std::clamp(index - static_cast<double>(i), 0.0, 1.0);
+  double ds = b.s - a.s;
+  if (road.path.ends == Ends::kClosed) ds = std::remainder(ds, road.path.length());
+  const Pose2 &from = a.path_from_base, &to = b.path_from_base;
+  return {stamp,
+          Pose2(from.position() + weight * (to.position() - from.position()),
+                interpolate_angle(from.heading(), to.heading(), weight)),
+          road.path.hold(a.s + weight * ds), a.l + weight * (b.l - a.l)};
+}
+
+RecordedDrive record_drive(const AccuracyScene& scene) {
+  VehicleSimulation vehicle(scene.reference, scene.vehicle);
+  RecordedDrive drive;
+  drive.road = {vehicle.path(), scene.lanes, scene.vehicle.paint.lines};
+  drive.navigation = {"map", scene.lines};
+  drive.start = kStart;
+  drive.end = kStart + from_seconds(scene.duration);
+
+  std::mt19937_64 engine = random_engine(scene.vehicle.seed, 70);
+  Beat truth{kTruthPeriod, Time::zero()};
+  Beat localization = random_beat(engine, 50.0, 100.0), chassis = random_beat(engine, 50.0, 100.0),
+       markers = random_beat(engine, 10.0, 15.0);
+  const Time duration = from_seconds(scene.duration);
+  Time last_marker_message = kStart;
+  for (;;) {
+    Beat* next = std::min({&truth, &localization, &chassis, &markers},
+                          [](const Beat* a, const Beat* b) { return a->due < b->due; });
+    if (next->due > duration) break;
+    vehicle.step(to_seconds(next->due - vehicle.time()));
+    const Time now = kStart + vehicle.time();
+    next->due += next->period;
+    if (next == &truth) {
+      const Pose2 pose = vehicle.map_from_base();
+      drive.truth.push_back(
+          {now, Pose2(pose.position() - drive.road.path.origin, pose.heading()), vehicle.s(), vehicle.l()});
+    } else if (next == &localization) {
+      Localization message = vehicle.measure_localization();
+      message.stamp = now;
+      drive.deliveries.push_back({now, message});
+    } else if (next == &chassis) {
+      Chassis message = vehicle.measure_chassis();
+      message.stamp = now;
+      drive.deliveries.push_back({now, message});
+    } else {
+      LaneMarkers message = vehicle.measure_lane_markers();
+      message.stamp = now;
+      // One camera's messages do not overtake each other.
+      last_marker_message = std::max(last_marker_message, now + vehicle.marker_latency());
+      drive.deliveries.push_back({last_marker_message, message});
+    }
+  }
+  std::stable_sort(drive.deliveries.begin(), drive.deliveries.end(),
+                   [](const Delivery& a, const Delivery& b) { return a.time < b.time; });
+  return drive;
+}
+
+}  // namespace relative_map::core
