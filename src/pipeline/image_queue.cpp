@@ -1,5 +1,6 @@
 #include "relative_map/pipeline/image_queue.hpp"
 
+#include <cmath>
 #include <sstream>
 
 namespace relative_map::core {
@@ -7,6 +8,21 @@ namespace relative_map::core {
 namespace {
 
 constexpr std::size_t kMostWaiting = 50;  // images: a tick takes all of them
+constexpr double kFrozenReach = 15.0;     // [m] ahead, where odometry still knows where paint must be
+constexpr double kFrozenError = 0.3;      // [m] that paint seems to have moved by
+
+bool same_numbers(const Cubic& a, const Cubic& b) {
+  return a.c0 == b.c0 && a.c1 == b.c1 && a.c2 == b.c2 && a.c3 == b.c3;
+}
+
+/// Whether paint that was where the cubic is, seen from `then`, is not where it is seen from now.
+bool has_moved(const Cubic& cubic, const Pose2& now_from_then) {
+  for (double x = 0.0; x <= kFrozenReach; x += 5.0) {
+    const Point2 point = now_from_then.to_parent(Point2(x, cubic.value(x)));
+    if (std::abs(point.y() - cubic.value(point.x())) > kFrozenError) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -37,12 +53,35 @@ std::vector<ImageQueue::Image> ImageQueue::take(Time now, Time pose_stamp, const
   return images;
 }
 
+/// Paint does not move with the vehicle.
+bool ImageQueue::is_frozen(const LaneMarkers& markers) {
+  if (!same_since_ || !same_numbers(markers.left.cubic, same_since_->left.cubic) ||
+      !same_numbers(markers.right.cubic, same_since_->right.cubic)) {
+    same_since_ = markers;
+    frozen_ = false;
+    return false;
+  }
+  const std::optional<Pose2> then = odometry_.at(same_since_->stamp), now = odometry_.at(markers.stamp);
+  if (!then || !now) return frozen_;
+  const Pose2 now_from_then = now->to_local(*then);
+  for (const LaneMarker* marker : {&markers.left, &markers.right}) {
+    if (marker->quality > 0.0 && has_moved(marker->cubic, now_from_then)) frozen_ = true;
+  }
+  // Odometry is good for a short while: look again from here.
+  if (now_from_then.position().norm() > kFrozenReach) same_since_ = markers;
+  return frozen_;
+}
+
 std::optional<ImageQueue::Image> ImageQueue::look_at(const LaneMarkers& markers, Time pose_stamp,
                                                      const PipelineConfig& config,
-                                                     std::vector<std::string>& remarks) const {
+                                                     std::vector<std::string>& remarks) {
   const std::optional<Pose2> then = odometry_.at(markers.stamp), now = odometry_.at(pose_stamp);
   if (!then || !now) {
     remarks.push_back("lane markers: no pose is known for their stamp");
+    return std::nullopt;
+  }
+  if (is_frozen(markers)) {
+    remarks.push_back("lane markers: they are frozen: the numbers stay the same while the vehicle moves");
     return std::nullopt;
   }
   const std::optional<std::string> left_fault = fault_of(markers.left, config.navigation_lane),

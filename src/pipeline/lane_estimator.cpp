@@ -27,9 +27,15 @@ constexpr double kSpeedScale = 0.01;       // [-] of the speed, besides
 constexpr double kJumpDistance = 40.0;  // squared, in standard deviations: localization has jumped
 constexpr double kGate = 30.0;          // squared, in standard deviations: not this lane's paint
 constexpr double kOffsetGate = 3.5;     // standard deviations of a marker's mean offset
-constexpr double kNearEdge = 0.7;       // [m] from its border the vehicle may be taken to be in either lane
+constexpr double kNearEdge = 0.5;       // [m] from its border the vehicle may be taken to be in either lane
+constexpr double kSameBorder = 0.6;     // [m] by which paint may be off to be the border that it is not called
 constexpr double kPatience = 0.7;       // [s] of paint that agrees on something else, until it is believed
 constexpr double kMaxSurprise = 1.4;    // [m] that it may differ by: less than half a lane
+constexpr double kRecording = 0.4;      // [m] of one line against another
+constexpr double kOtherWidth = 0.1;     // [m] of one lane against another
+constexpr double kMaxBias = 30.0;       // [m] of localization, and ...
+constexpr double kMaxHeadingBias = 0.1;  // [rad] ... no estimate beyond them is one
+constexpr double kLostTime = 2.5;       // [s] in which none of the paint counted: the estimate is wrong
 constexpr double kHoldTime = 1.0;       // [s] without paint until the estimate starts to decay
 constexpr double kDecayTime = 30.0;     // [s] of the decay
 constexpr double kForgetTime = 60.0;    // [s] without paint until nothing is left worth having
@@ -135,6 +141,8 @@ void LaneEstimator::move(const VehicleState& localized) {
   follow_odometry(localized);
   follow_localization(localized);
   last_ = localized;
+  const Filter::State& x = filter_.state();
+  if (x.segment<2>(kBiasX).norm() > kMaxBias || std::abs(x[kBiasHeading]) > kMaxHeadingBias) start(localized);
 }
 
 void LaneEstimator::follow_odometry(const VehicleState& to) {
@@ -180,9 +188,12 @@ void LaneEstimator::follow_localization(const VehicleState& localized) {
                                 .asDiagonal();
   const Vector3 gap = innovation();
   if (filter_.squared_distance(gap, h, r) > kJumpDistance) {
-    // Vehicles do not jump, localization does: its bias is another one now.
-    x.segment<3>(kBiasX) += gap;
-    for (int i = 0; i < 3; ++i) filter_.covariance()(kBiasX + i, kBiasX + i) += 0.05 * gap[i] * gap[i];
+    // Vehicles do not jump, localization does: its bias is another one now. Headings are another matter:
+    // localization's hardly drift, and odometry's do where a yaw rate is wrong.
+    x.segment<2>(kBiasX) += gap.head<2>();
+    x[kHeading] += gap[2];
+    for (int i = 0; i < 2; ++i) filter_.covariance()(kBiasX + i, kBiasX + i) += 0.05 * gap[i] * gap[i];
+    filter_.covariance()(kHeading, kHeading) += gap[2] * gap[2];
   }
   filter_.correct(innovation(), h, r);
 }
@@ -203,6 +214,9 @@ void LaneEstimator::keep_profile_beside(const NavigationLine& line, const LinePr
     p.rightCols<kKnots>().setZero();
     p.bottomRows<kKnots>().setZero();
     p.bottomRightCorner<kKnots, kKnots>() = OffsetProfile::prior();
+    // Each line has been recorded with an error of its own, and each lane has its width.
+    doubt_bias(kRecording * kRecording);
+    p.block<2, 2>(kLeft, kLeft) += HalfWidthModel::covariance(kOtherWidth * kOtherWidth, 0.0);
     return;
   }
   line_s_ += moved;
@@ -287,9 +301,7 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
   std::vector<std::string> ignored;
   if (!last_) return ignored;
   keep_profile_beside(line, projection);
-  // Beside a border the camera and the map may not be of one mind yet on which lane the vehicle is in.
   const Filter::State& x = filter_.state();
-  const bool at_left = projection.l > x[kLeft] - kNearEdge, at_right = -projection.l > x[kRight] - kNearEdge;
   struct Seen {
     Index side;
     const std::optional<PaintSamples>* paint;
@@ -297,24 +309,23 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
     std::optional<Measurement> measurement;
   };
   std::array<Seen, 2> seen{Seen{kLeft, &sides.left, "left", {}}, Seen{kRight, &sides.right, "right", {}}};
-  if (at_left) seen[0].paint = &sides.right;  // the lane's left border is on the vehicle's right ...
-  if (at_right) seen[1].paint = &sides.left;
   const auto measure_again = [&](Seen& one) {
     one.measurement.reset();
     if (*one.paint) one.measurement = measure(**one.paint, one.side, line, projection.nearest_vertex);
   };
   for (Seen& one : seen) measure_again(one);
-  if (at_left || at_right) {  // ... or still on its left
-    Seen& border = seen[at_left ? 0 : 1];
-    const Seen other{border.side, at_left ? &sides.left : &sides.right, border.name, {}};
-    Seen alternative = other;
-    measure_again(alternative);
-    if (alternative.measurement &&
-        (!border.measurement ||
-         alternative.measurement->squared_distance < border.measurement->squared_distance)) {
-      border = alternative;
-    } else {
-      seen[at_left ? 1 : 0].measurement.reset();  // the paint beyond is another lane's
+  // Beside a border the camera and the map may not be of one mind yet on which lane the vehicle is in: the
+  // lane's left border may be on the right of the camera already, and the other way round.
+  const double to_left = x[kLeft] - projection.l, to_right = x[kRight] + projection.l;
+  if (std::min(to_left, to_right) < kNearEdge) {
+    const bool at_left = to_left < to_right;
+    Seen &border = seen[at_left ? 0 : 1], &beyond = seen[at_left ? 1 : 0];
+    Seen crossed{border.side, beyond.paint, beyond.name, {}};
+    measure_again(crossed);
+    const double offset = crossed.measurement ? std::abs(crossed.measurement->mean_offset()) : kSameBorder;
+    if (offset < kSameBorder && !(border.measurement && std::abs(border.measurement->mean_offset()) < offset)) {
+      border = crossed;
+      beyond.measurement.reset();
     }
   }
   const auto distance = [](const Seen& one) {
@@ -344,8 +355,11 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
   if (any) {
     last_paint_ = stamp;
     disagreeing_since_.reset();
-  } else {
+    refused_since_.reset();
+  } else if (!ignored.empty()) {
     reconsider(seen[0].measurement, seen[1].measurement, stamp);
+    if (!refused_since_) refused_since_ = stamp;
+    if (to_seconds(stamp - *refused_since_) > kLostTime) start(*last_);
   }
   return ignored;
 }
@@ -360,15 +374,19 @@ void LaneEstimator::reconsider(const std::optional<Measurement>& first,
   if (!disagreeing_since_) disagreeing_since_ = stamp;
   if (to_seconds(stamp - *disagreeing_since_) < kPatience) return;
   // Both borders say the same for long: the bias is another one than was thought.
-  Filter::Covariance& p = filter_.covariance();
-  const double surprise = first->mean_offset() * first->mean_offset();
-  for (int i = 0; i < 2; ++i) {
-    p(kX + i, kX + i) += surprise;
-    p(kBiasX + i, kBiasX + i) += surprise;
-    p(kX + i, kBiasX + i) -= surprise;
-    p(kBiasX + i, kX + i) -= surprise;
-  }
+  doubt_bias(first->mean_offset() * first->mean_offset());
   disagreeing_since_.reset();
+}
+
+/// Localization's bias may have changed by so much [m^2], and the vehicle's place with it.
+void LaneEstimator::doubt_bias(double variance) {
+  Filter::Covariance& p = filter_.covariance();
+  for (int i = 0; i < 2; ++i) {
+    p(kX + i, kX + i) += variance;
+    p(kBiasX + i, kBiasX + i) += variance;
+    p(kX + i, kBiasX + i) -= variance;
+    p(kBiasX + i, kX + i) -= variance;
+  }
 }
 
 VehicleState LaneEstimator::corrected(const VehicleState& localized) const {
@@ -383,6 +401,7 @@ bool LaneEstimator::apply(LanePath& lane) const {
   if (!informed() || lane.id != line_id_) return false;
   lane.left_half_width = filter_.state()[kLeft];
   lane.right_half_width = filter_.state()[kRight];
+  lane.seen = {lane.left_half_width, lane.right_half_width, lane.s_at_vehicle + paint_range_};
   const OffsetProfile profile(filter_.state().tail<OffsetProfile::kKnots>());
   const double start = (line_s_ - first_knot_s_ - lane.s_at_vehicle) / OffsetProfile::kSpacing;
   for (PathPoint& point : lane.points) {

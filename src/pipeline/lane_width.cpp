@@ -13,6 +13,8 @@ enum class Side { kLeft = 1, kRight = -1 };
 constexpr double kSearchStep = 1.0;  // [m] between the places where narrowness is looked for
 constexpr double kShortestLane =
     30.0;  // [m] ahead of the vehicle; what is left of a lane must be worth a change
+constexpr double kForgetLength = 50.0;  // [m] past the paint over which a shared border goes to the middle
+constexpr double kLeastShare = 0.3;     // of the spacing, for each of two neighbours
 constexpr double kBlendLength = 10.0;  // [m] over which a border leaves the midline where the neighbour ends
 constexpr double kSharpestFold = 0.8;  // of the radius: a border farther inside a curve would fold
 constexpr double kJoinGap = 0.1;       // [m] nearer to the shared part no point is added
@@ -173,36 +175,61 @@ Polyline own_border(const LanePath& lane, const std::vector<Beside>& beside, dou
 /// A point of the border that two lanes share, and the places beside it.
 struct Middle {
   Point2 point;
-  double spacing;          ///< [m] of the centerlines
-  double left_s, right_s;  ///< [m] along the lanes
+  double left_width, right_width;  ///< [m] of it from the left and the right lane's centerline
+  double left_s, right_s;          ///< [m] along the lanes
 };
 
+/// 1 where paint was seen, to 0 some way past it.
+double seen_share(const SeenHalfWidths& seen, double s) {
+  const double t = std::clamp((s - seen.to) / kForgetLength, 0.0, 1.0);
+  return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
+/// [m] The shared border's distance from the left lane: where paint was seen, else half way to the right one.
+double width_of_left(const LanePath& left, const LanePath& right, double spacing, double left_s,
+                     double right_s) {
+  const double middle = 0.5 * spacing;
+  double width = middle;
+  if (left.seen) width += seen_share(*left.seen, left_s) * (left.seen->right - middle);
+  if (right.seen) width -= seen_share(*right.seen, right_s) * (right.seen->left - middle);
+  return std::clamp(width, kLeastShare * spacing, (1.0 - kLeastShare) * spacing);
+}
+
+Middle middle_between(const LanePath& left, const Point2& on_left, double left_s, const LanePath& right,
+                      const Point2& on_right, double right_s) {
+  const double spacing = (on_right - on_left).norm();
+  const double width = width_of_left(left, right, spacing, left_s, right_s);
+  const double share = spacing > 0.0 ? width / spacing : 0.5;
+  return {on_left + share * (on_right - on_left), width, spacing - width, left_s, right_s};
+}
+
 /// Beside an end of the right lane; none: the left lane does not reach there. `near` is a segment close by.
-std::optional<Middle> middle_at_end(const LanePath& left, const PathPoint& end, std::size_t near) {
+std::optional<Middle> middle_at_end(const LanePath& left, const LanePath& right, const PathPoint& end,
+                                    std::size_t near) {
   const Polyline centerline = positions_of(left.points);
   PolylineWalker walker(centerline, std::min(near, centerline.size() - 2));
   const Foot foot = walker.next(end.position);
   if (walker.beyond_end(foot)) return std::nullopt;
   const double before = left.points[foot.segment].s, after = left.points[foot.segment + 1].s;
-  return Middle{0.5 * (foot.point + end.position), std::sqrt(foot.squared_distance),
-                before + foot.fraction * (after - before), end.s};
+  return middle_between(left, foot.point, before + foot.fraction * (after - before), right, end.position,
+                        end.s);
 }
 
-/// The line midway between two lanes, as far as both reach.
+/// The border between two lanes, as far as both reach.
 std::vector<Middle> midline(const LanePath& left, const LanePath& right, const std::vector<Beside>& beside,
                             const Stretch& stretch) {
   std::vector<Middle> line;
   line.reserve(stretch.last - stretch.first + 3);
   for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
     const PathPoint& vertex = left.points[i];
-    line.push_back({0.5 * (vertex.position + beside[i].point), beside[i].spacing, vertex.s, beside[i].s});
+    line.push_back(middle_between(left, vertex.position, vertex.s, right, beside[i].point, beside[i].s));
   }
   // Where the right lane starts or ends between two vertices of the left one, so does the shared border.
-  if (const auto start = middle_at_end(left, right.points.front(), stretch.first)) {
+  if (const auto start = middle_at_end(left, right, right.points.front(), stretch.first)) {
     line.front().right_s = start->right_s;
     if (start->left_s < line.front().left_s - kJoinGap) line.insert(line.begin(), *start);
   }
-  if (const auto end = middle_at_end(left, right.points.back(), stretch.last)) {
+  if (const auto end = middle_at_end(left, right, right.points.back(), stretch.last)) {
     line.back().right_s = end->right_s;
     if (end->left_s > line.back().left_s + kJoinGap) line.push_back(*end);
   }
@@ -219,7 +246,8 @@ Polyline prolonged(const std::vector<Middle>& midline, const LanePath& lane, dou
   border.reserve(lane.points.size() + 2);
   const auto add_beyond = [&](std::size_t i, const Middle& end) {
     const double distance = std::abs(lane.points[i].s - s_of(end));
-    const double width = half_width_past_neighbor(own, 0.5 * end.spacing, distance);
+    const double width =
+        half_width_past_neighbor(own, side == Side::kRight ? end.left_width : end.right_width, distance);
     border.push_back(border_point(lane.points, i, width, side));
   };
   for (std::size_t i = 0; i < lane.points.size() && lane.points[i].s < s_of(first) - kJoinGap; ++i) {

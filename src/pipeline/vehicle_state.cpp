@@ -12,6 +12,7 @@ namespace {
 constexpr double kJump = 5.0;                                       // [m] that no speed has to explain
 constexpr Time kKept = std::chrono::seconds(3);                     // of poses
 constexpr Time kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
+constexpr Time kZeroInterval = std::chrono::seconds(1);             // of yaw rates of exactly 0
 constexpr Time kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
 
 bool usable(const Eigen::Quaterniond& q) {
@@ -102,8 +103,10 @@ Pose2 carried_on(const VehicleState& state, double seconds) {
 void PoseBuffer::add(const VehicleState& state) {
   while (!states_.empty() && states_.back().stamp >= state.stamp) states_.pop_back();
   if (!states_.empty() && has_jumped(states_.back(), state)) states_.clear();
+  if (state.yaw_rate != 0.0 || states_.empty()) last_turn_ = state.stamp;
+  const bool never_filled = state.yaw_rate == 0.0 && state.stamp - last_turn_ >= kZeroInterval;
   states_.push_back(state);
-  if (!std::isfinite(state.yaw_rate)) states_.back().yaw_rate = turn_rate_up_to(state);
+  if (!std::isfinite(state.yaw_rate) || never_filled) states_.back().yaw_rate = turn_rate_up_to(state);
   while (states_.front().stamp < state.stamp - kKept) states_.pop_front();
 }
 

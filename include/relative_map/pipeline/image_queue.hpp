@@ -30,9 +30,13 @@ class ImageQueue {
 
  private:
   std::optional<Image> look_at(const LaneMarkers& markers, Time pose_stamp, const PipelineConfig& config,
-                               std::vector<std::string>& remarks) const;
+                               std::vector<std::string>& remarks);
+
+  bool is_frozen(const LaneMarkers& markers);
 
   std::vector<LaneMarkers> waiting_;
+  std::optional<LaneMarkers> same_since_;  ///< the first image of those that say the same numbers as the last
+  bool frozen_ = false;
   PoseBuffer odometry_;  ///< poses by speed and yaw rate alone, from an origin of its own
   std::optional<VehicleState> last_;
 };

@@ -76,6 +76,7 @@ class LaneEstimator {
   double mean_stddev(const Measurement& measurement) const;
   /// Takes the bias for less sure when both borders have been saying the same for long.
   void reconsider(const std::optional<Measurement>& first, const std::optional<Measurement>& second, Time stamp);
+  void doubt_bias(double variance);
 
   Filter filter_;
   std::optional<VehicleState> last_;  ///< as localized
@@ -85,7 +86,7 @@ class LaneEstimator {
   double first_knot_s_ = 0.0;  ///< [m] the same for the first knot
   double last_projected_s_ = 0.0;
   double half_width_ = 1.75;  ///< [m] expected where paint tells nothing
-  std::optional<Time> last_paint_, disagreeing_since_;
+  std::optional<Time> last_paint_, disagreeing_since_, refused_since_;
   double paint_range_ = 0.0;
   BoundaryType left_paint_ = BoundaryType::kUnknown, right_paint_ = BoundaryType::kUnknown;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,12 @@
 #include "relative_map/model/inputs.hpp"
 
 namespace relative_map::core {
+
+/// Half widths that paint has shown.
+struct SeenHalfWidths {
+  double left = 0.0, right = 0.0;  ///< [m]
+  double to = 0.0;                 ///< [m] s up to which
+};
 
 /// One lane on its way through the stages: its centerline in the body frame and what is known of it.
 struct LanePath {
@@ -20,6 +27,7 @@ struct LanePath {
   double remaining = 0.0;         ///< [m] to the end of the line
   double left_half_width = 0.0;   ///< [m] where no neighbour bounds it
   double right_half_width = 0.0;  ///< [m] where no neighbour bounds it
+  std::optional<SeenHalfWidths> seen;
 };
 
 /// Sets s_at_vehicle and l from the points: where the origin of the body frame is beside the path, or beside

@@ -39,7 +39,8 @@ class PoseBuffer {
  public:
   /// A stamp at or before the newest one's replaces what came after it: time has been set back.
   /// After a jump the poses before it are forgotten: what was seen from them lies elsewhere now.
-  /// A yaw rate that is not given comes from the headings of the poses before.
+  /// A yaw rate that is not given, or that seems never to be filled, comes from the headings of the poses
+  /// before.
   void add(const VehicleState& state);
   /// Interpolated between poses, carried on by speed and yaw rate a little beyond them; none further out.
   std::optional<Pose2> at(Time stamp) const;
@@ -51,6 +52,7 @@ class PoseBuffer {
   double turn_rate_up_to(const VehicleState& state) const;
 
   std::deque<VehicleState> states_;  ///< by rising stamp
+  Time last_turn_{};                 ///< of the newest yaw rate that was not exactly 0
 };
 
 }  // namespace relative_map::core
