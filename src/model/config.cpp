@@ -74,6 +74,8 @@ std::vector<std::string> PipelineConfig::validate() const {
   if (lane_fusion.method != "estimator" && lane_fusion.method != "fixed_weight") {
     faults.add("lane_fusion/method is '" + lane_fusion.method + "', but must be estimator or fixed_weight");
   }
+  faults.range("lane_fusion/max_offset", lane_fusion.max_offset, 0.0, 1e3);
+  faults.range("lane_fusion/decay_time", lane_fusion.decay_time, 0.1, 1e4);
   faults.range("lane_fusion/hold_time", lane_fusion.hold_time, 0.0, 60.0);
   faults.range("lane_fusion/fade_length", lane_fusion.fade_length, 10.0, 1e3);
 

@@ -42,12 +42,8 @@ std::vector<ImageQueue::Image> ImageQueue::take(Time now, Time pose_stamp, const
                                                 std::vector<std::string>& remarks) {
   std::vector<Image> images;
   for (const LaneMarkers& markers : waiting_) {
-    const Time age = now - markers.stamp;
-    if (to_seconds(age) > config.max_age.lane_markers) {
-      remarks.push_back("lane markers: they are " + std::to_string(to_seconds(age)) + " s old");
-    } else if (auto image = look_at(markers, pose_stamp, config, remarks)) {
-      images.push_back(std::move(*image));
-    }
+    if (to_seconds(now - markers.stamp) > config.max_age.lane_markers) continue;
+    if (auto image = look_at(markers, pose_stamp, config, remarks)) images.push_back(std::move(*image));
   }
   waiting_.clear();
   return images;

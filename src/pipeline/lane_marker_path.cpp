@@ -159,9 +159,11 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
   return result;
 }
 
-MarkerPath make_marker_path(const Cubic& centerline, double seen_to, double left_half_width,
-                            double right_half_width, double speed, const NavigationLaneParam& param) {
-  return follow({centerline, 0.0, 0.0, seen_to, left_half_width, right_half_width}, Pose2(), speed, param);
+MarkerPath make_marker_path(const Cubic& centerline, const Pose2& base_from_frame, double seen_to,
+                            double left_half_width, double right_half_width, double speed,
+                            const NavigationLaneParam& param) {
+  return follow({centerline, 0.0, 0.0, seen_to, left_half_width, right_half_width}, base_from_frame, speed,
+                param);
 }
 
 }  // namespace relative_map::core

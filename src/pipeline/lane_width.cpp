@@ -15,10 +15,10 @@ constexpr double kShortestLane =
     30.0;  // [m] ahead of the vehicle; what is left of a lane must be worth a change
 constexpr double kForgetLength = 50.0;  // [m] past the paint over which a shared border goes to the middle
 constexpr double kLeastShare = 0.3;     // of the spacing, for each of two neighbours
-constexpr double kBlendLength = 10.0;  // [m] over which a border leaves the midline where the neighbour ends
-constexpr double kSharpestFold = 0.8;  // of the radius: a border farther inside a curve would fold
-constexpr double kJoinGap = 0.1;       // [m] nearer to the shared part no point is added
-constexpr double kAlmostSquare = 0.1;  // [rad] past its end the other lane still counts as beside
+constexpr double kBlendLength = 10.0;   // [m] over which a border leaves the midline where the neighbour ends
+constexpr double kSharpestFold = 0.8;   // of the radius: a border farther inside a curve would fold
+constexpr double kJoinGap = 0.1;        // [m] nearer to the shared part no point is added
+constexpr double kAlmostSquare = 0.1;   // [rad] past its end the other lane still counts as beside
 
 /// What lies beside one vertex of a lane.
 struct Beside {

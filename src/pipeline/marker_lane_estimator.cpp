@@ -16,12 +16,12 @@ constexpr double kSlope0 = 0.3;           // [-]
 constexpr double kCurvature0 = 0.05;      // [1/m]
 constexpr double kCurvatureRate0 = 2e-3;  // [1/m^2]
 // ... and of the random walks, by the root of the way [m] or the time [s].
-constexpr double kCurvatureRateWalk = 4e-5;  // [1/m^2] by way
-constexpr double kCurvatureWalk = 2e-4;      // [1/m] by way
-constexpr double kHeadingWalk = 0.002;       // [rad] by time
-constexpr double kSlipWalk = 0.02;           // [m] by time
+constexpr double kCurvatureRateWalk = 4e-5;    // [1/m^2] by way
+constexpr double kCurvatureWalk = 2e-4;        // [1/m] by way
+constexpr double kHeadingWalk = 0.002;         // [rad] by time
+constexpr double kSlipWalk = 0.02;             // [m] by time
 constexpr double kCurvatureRateLength = 60.0;  // [m] over which a change of curvature ends
-constexpr double kGate = 30.0;               // squared, in standard deviations
+constexpr double kGate = 30.0;                 // squared, in standard deviations
 
 }  // namespace
 

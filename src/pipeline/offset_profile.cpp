@@ -27,7 +27,8 @@ double basis(double distance) {
 }  // namespace
 
 OffsetProfile::Next OffsetProfile::next() {
-  const double k0 = kernel(0.0), k1 = kernel(OffsetProfile::kSpacing), k2 = kernel(2.0 * OffsetProfile::kSpacing);
+  const double k0 = kernel(0.0), k1 = kernel(OffsetProfile::kSpacing),
+               k2 = kernel(2.0 * OffsetProfile::kSpacing);
   Eigen::Matrix2d known;
   known << k0, k1, k1, k0;
   const Eigen::Vector2d cross(k1, k2), shares = known.inverse() * cross;

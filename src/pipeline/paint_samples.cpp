@@ -53,7 +53,6 @@ std::optional<std::string> fault_of(const LaneMarker& marker, const NavigationLa
   return fault.str();
 }
 
-
 PaintSamples sample_paint(const LaneMarker& marker, const Pose2& base_from_sensor) {
   PaintSamples samples;
   samples.type = marker.type;

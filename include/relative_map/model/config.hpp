@@ -30,8 +30,12 @@ struct NavigationLaneParam {
 
 struct LaneFusionParam {
   std::string method = "estimator";  ///< or "fixed_weight", as the original fuses
-  double fade_length = 50.0;  ///< [m] past view_range the correction fades out over it (fixed_weight)
-  double hold_time = 4.0;     ///< [s] that a lane from markers alone goes on without them (estimator)
+  // Of the estimator.
+  double max_offset = 30.0;  ///< [m] that the lane may be from where localization puts it
+  double decay_time = 30.0;  ///< [s] in which the offset decays to 1/e when no lane markers come
+  double hold_time = 4.0;    ///< [s] that a lane from markers alone goes on without them
+  // Of fixed_weight.
+  double fade_length = 50.0;  ///< [m] past view_range the correction fades out over this length
 };
 
 /// How old the newest message of an input may be [s]; navigation is latched and does not age.
@@ -55,7 +59,7 @@ struct PipelineConfig {
   LaneFusionParam lane_fusion;
   MaxAgeParam max_age;
   Footprint footprint;
-  bool predict_to_tick = false;  ///< maps are for the tick's time, not for the newest pose's
+  bool predict_to_tick = false;          ///< maps are for the tick's time, not for the newest pose's
   std::string base_frame = "base_link";  ///< maps are in this frame
   bool enable_cyclic_rerouting = true;
   bool generate_left_boundary = true;  ///< false: the outermost left boundary is marked virtual

@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 namespace relative_map::core {
 
@@ -13,6 +15,14 @@ inline double to_seconds(Time duration) {
 }
 inline Time from_seconds(double seconds) {
   return Time(std::llround(seconds * 1e9));
+}
+
+/// As people are told of a duration: "1.23 s".
+inline std::string seconds_text(Time duration) {
+  std::ostringstream text;
+  text.precision(3);
+  text << to_seconds(duration) << " s";
+  return text.str();
 }
 
 }  // namespace relative_map::core

@@ -24,7 +24,7 @@ class ImageQueue {
   void clear() { *this = ImageQueue(); }
 
   /// The images of use, oldest first, as seen from the pose of time `pose_stamp`; the queue is empty then.
-  /// What is of no use leaves a sentence.
+  /// Old ones are dropped; others of no use leave a sentence.
   std::vector<Image> take(Time now, Time pose_stamp, const PipelineConfig& config,
                           std::vector<std::string>& remarks);
 

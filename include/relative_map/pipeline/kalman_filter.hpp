@@ -62,8 +62,8 @@ class KalmanFilter {
     const Eigen::Matrix<double, States, kRows> gain = s.ldlt().solve(p_ht.transpose()).transpose();
     state_ += gain * innovation;
     // (I - K H) P (I - K H)' + K R K'
-    const Covariance p = covariance_ - gain * p_ht.transpose() - p_ht * gain.transpose() +
-                         gain * s * gain.transpose();
+    const Covariance p =
+        covariance_ - gain * p_ht.transpose() - p_ht * gain.transpose() + gain * s * gain.transpose();
     covariance_ = 0.5 * (p + p.transpose());
   }
 

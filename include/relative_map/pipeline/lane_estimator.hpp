@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "relative_map/model/config.hpp"
 #include "relative_map/model/map.hpp"
 #include "relative_map/pipeline/kalman_filter.hpp"
 #include "relative_map/pipeline/lane_path.hpp"
@@ -23,10 +24,14 @@ namespace relative_map::core {
 class LaneEstimator {
  public:
   /// Odometry up to `localized`, and what localization says there.
-  void move(const VehicleState& localized);
-  /// Paint beside the line that the vehicle is on. Returns a sentence for each side that was ignored.
+  void move(const VehicleState& localized, const LaneFusionParam& param);
+  /// The line that the vehicle is on, and where.
+  void follow_line(const NavigationLine& line, const LineProjection& projection);
+  /// Paint beside that line. Returns a sentence for each side that was ignored.
   std::vector<std::string> see(const SeenSides& sides, const NavigationLine& line,
                                const LineProjection& projection, Time stamp);
+  /// `half_width` [m] of the lane, where nothing of it was seen yet.
+  void expect_half_width(double half_width) { half_width_ = half_width; }
   /// Forgets everything: localization is believed as it is.
   void reset() { *this = LaneEstimator(); }
 
@@ -34,6 +39,8 @@ class LaneEstimator {
   bool informed() const { return last_paint_.has_value(); }
   /// The time of the newest paint that counted.
   std::optional<Time> last_paint() const { return last_paint_; }
+  /// Why the estimate was thrown away, until it is one again; empty: it was not.
+  const std::string& given_up() const { return given_up_; }
   /// [m] how far ahead of the vehicle that paint reaches.
   double paint_range() const { return paint_range_; }
 
@@ -42,11 +49,9 @@ class LaneEstimator {
 
   /// Where the vehicle is: `localized` without what is known to be wrong with it.
   VehicleState corrected(const VehicleState& localized) const;
-  /// Moves the current lane to where it is beside its line, and sets its half widths.
-  /// Returns whether it did: not without anything known of this lane.
-  bool apply(LanePath& lane) const;
-  /// Half widths of the lane [m], where nothing of it was seen yet.
-  void expect_half_width(double half_width);
+  /// Moves the current lane to where it is beside its line, and sets its half widths: the window of `line`
+  /// around `projection`. Returns whether it did: not without anything known of this line.
+  bool apply(const NavigationLine& line, const LineProjection& projection, LanePath& lane) const;
   FusionState state(const LineProjection& projection, double heading) const;
 
  private:
@@ -67,15 +72,17 @@ class LaneEstimator {
   };
 
   void start(const VehicleState& localized);
-  void follow_odometry(const VehicleState& to);
+  void give_up(const VehicleState& localized, const std::string& why);
+  void follow_odometry(const VehicleState& to, double decay_time);
   void follow_localization(const VehicleState& localized);
-  void keep_profile_beside(const NavigationLine& line, const LineProjection& projection);
+  double s_along(const NavigationLine& line, double s) const;
   std::optional<Measurement> measure(const PaintSamples& paint, Index side, const NavigationLine& line,
                                      std::size_t vertex) const;
   bool fits(const Measurement& measurement) const;
   double mean_stddev(const Measurement& measurement) const;
   /// Takes the bias for less sure when both borders have been saying the same for long.
-  void reconsider(const std::optional<Measurement>& first, const std::optional<Measurement>& second, Time stamp);
+  void reconsider(const std::optional<Measurement>& first, const std::optional<Measurement>& second,
+                  Time stamp);
   void doubt_bias(double variance);
 
   Filter filter_;
@@ -88,6 +95,7 @@ class LaneEstimator {
   double half_width_ = 1.75;  ///< [m] expected where paint tells nothing
   std::optional<Time> last_paint_, disagreeing_since_, refused_since_;
   double paint_range_ = 0.0;
+  std::string given_up_;
   BoundaryType left_paint_ = BoundaryType::kUnknown, right_paint_ = BoundaryType::kUnknown;
 };
 

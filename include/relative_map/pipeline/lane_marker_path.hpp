@@ -28,8 +28,10 @@ std::variant<MarkerPath, std::string> make_marker_path(const LaneMarkers& marker
                                                        const MapParam& map_param,
                                                        const NavigationLaneParam& param);
 
-/// The same along a centerline in the body frame that was estimated from paint seen up to x = `seen_to` [m].
-MarkerPath make_marker_path(const Cubic& centerline, double seen_to, double left_half_width,
-                            double right_half_width, double speed, const NavigationLaneParam& param);
+/// The same along a centerline that was estimated from paint seen up to x = `seen_to` [m], in a frame that
+/// lies in the body as `base_from_frame` says.
+MarkerPath make_marker_path(const Cubic& centerline, const Pose2& base_from_frame, double seen_to,
+                            double left_half_width, double right_half_width, double speed,
+                            const NavigationLaneParam& param);
 
 }  // namespace relative_map::core

@@ -21,7 +21,8 @@ std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double 
                                            const std::string& kept = "");
 
 /// Lanes up to twice `max_half_width` [m] apart share the line midway between them, or the paint where it was
-/// seen beside one of them; farther apart each keeps its own half width, with a gap between them. `lanes` are ordered left to right, none too narrow.
+/// seen beside one of them; farther apart each keeps its own half width, with a gap between them. `lanes` are
+/// ordered left to right, none too narrow.
 LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_width);
 
 }  // namespace relative_map::core

@@ -16,9 +16,10 @@ constexpr int kPaintSamples = 5;  ///< of one marker, evenly from its start to i
 /// One marker as measurements: points of the paint, and how sure they are together.
 struct PaintSamples {
   BoundaryType type = BoundaryType::kUnknown;
-  std::array<Point2, kPaintSamples> points;                          ///< [m] in the frame of the map's pose
-  Eigen::Matrix<double, kPaintSamples, kPaintSamples> covariance;    ///< [m^2] of the points, square to the paint
-  double from = 0.0, to = 0.0;                                       ///< [m] x in the marker's frame
+  std::array<Point2, kPaintSamples> points;  ///< [m] in the frame of the map's pose
+  Eigen::Matrix<double, kPaintSamples, kPaintSamples>
+      covariance;               ///< [m^2] of the points, square to the paint
+  double from = 0.0, to = 0.0;  ///< [m] x in the marker's frame
 };
 
 /// The paint of one image as seen from the body now; none: not seen, or of no use.

@@ -53,16 +53,18 @@ class RelativeMapPipeline {
   std::variant<RelativeMap, Status> build_estimated(const VehicleState& vehicle, Time now);
   std::variant<RelativeMap, Status> build_with_fixed_weight(const VehicleState& vehicle, Time now);
   std::variant<VehicleState, Status> vehicle_state(Time now);
+  /// Carried on to the tick, if that is wanted.
+  VehicleState predicted(VehicleState vehicle, Time now) const;
   std::optional<Chassis> fresh_chassis(Time now) const;
   void add_remarks(const std::vector<std::string>& remarks);
   std::variant<std::vector<TrackedLine>, Status> lines_in_reach(const VehicleState& vehicle);
   std::vector<LanePath> cut_lanes(const std::vector<TrackedLine>& lines, const VehicleState& vehicle);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
-  std::size_t choose_current(const std::vector<LanePath>& lanes) const;
-  const TrackedLine& choose_line(const std::vector<TrackedLine>& lines) const;
   void keep_room_beside(std::vector<LanePath>& lanes, std::size_t& current);
   std::variant<RelativeMap, Status> lane_of_markers(const std::vector<ImageQueue::Image>& images,
-                                                    const VehicleState& vehicle, Status otherwise);
+                                                    const VehicleState& localized, Time now,
+                                                    Status otherwise);
+  double default_half_width() const;
   Status nothing(Status status) const;
   RelativeMap finish(std::vector<LanePath> lanes, std::size_t current, const SeenPaint& paint,
                      FusionState fusion, const VehicleState& vehicle);

@@ -31,7 +31,8 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
 /// Whether the vehicle has moved by more than its speed explains: it was put elsewhere.
 bool has_jumped(const VehicleState& before, const VehicleState& after);
 
-/// Constant speed and yaw rate over `seconds` [s], which may be negative: the arc's chord at its mean heading.
+/// Constant speed and yaw rate over `seconds` [s], which may be negative: the arc's chord at its mean
+/// heading.
 Pose2 carried_on(const VehicleState& state, double seconds);
 
 /// The latest poses, to look up where the vehicle was when an image was taken.
