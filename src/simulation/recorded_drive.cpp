@@ -24,14 +24,18 @@ Beat random_beat(std::mt19937_64& engine, double low_rate, double high_rate) {
   return {from_seconds(period), from_seconds(period * phase(engine))};
 }
 
+TruePose true_pose(const VehicleSimulation& vehicle, Time now) {
+  const Pose2 pose = vehicle.map_from_base();
+  return {now, Pose2(pose.position() - vehicle.path().origin, pose.heading()), vehicle.s(), vehicle.l()};
+}
+
 }  // namespace
 
 TruePose RecordedDrive::truth_at(Time stamp) const {
-  const double index = to_seconds(stamp - start) / to_seconds(kTruthPeriod);
-  const double last = static_cast<double>(truth.size() - 1);
-  const auto i = static_cast<std::size_t>(std::clamp(std::floor(index), 0.0, last - 1.0));
-  const TruePose &a = truth[i], &b = truth[i + 1];
-  const double weight = std::clamp(index - static_cast<double>(i), 0.0, 1.0);
+  const auto after = std::upper_bound(truth.begin() + 1, truth.end() - 1, stamp,
+                                      [](Time time, const TruePose& pose) { return time < pose.stamp; });
+  const TruePose &a = *(after - 1), &b = *after;
+  const double weight = std::clamp(to_seconds(stamp - a.stamp) / to_seconds(b.stamp - a.stamp), 0.0, 1.0);
   double ds = b.s - a.s;
   if (road.path.ends == Ends::kClosed) ds = std::remainder(ds, road.path.length());
   const Pose2 &from = a.path_from_base, &to = b.path_from_base;
@@ -62,11 +66,8 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
     vehicle.step(to_seconds(next->due - vehicle.time()));
     const Time now = kStart + vehicle.time();
     next->due += next->period;
-    if (next == &truth) {
-      const Pose2 pose = vehicle.map_from_base();
-      drive.truth.push_back(
-          {now, Pose2(pose.position() - drive.road.path.origin, pose.heading()), vehicle.s(), vehicle.l()});
-    } else if (next == &localization) {
+    if (drive.truth.empty() || drive.truth.back().stamp < now) drive.truth.push_back(true_pose(vehicle, now));
+    if (next == &localization) {
       Localization message = vehicle.measure_localization();
       message.stamp = now;
       drive.deliveries.push_back({now, message});
@@ -74,7 +75,7 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
       Chassis message = vehicle.measure_chassis();
       message.stamp = now;
       drive.deliveries.push_back({now, message});
-    } else {
+    } else if (next == &markers) {
       LaneMarkers message = vehicle.measure_lane_markers();
       message.stamp = now;
       // One camera's messages do not overtake each other.
