@@ -80,8 +80,14 @@ void lane_change(Builder& b) {
 }
 
 void end_of_line(Builder& b) {
-  b.lay(country_road(b.seed, 500.0), 1, 1.75);
+  const RoadShape road = country_road(b.seed, 600.0);
+  b.lay(road, 1, 1.75);
   b.drive(15.0, 80.0);
+  // The road goes on, with its paint.
+  std::vector<LinePoint>& points = b.scene.lines.front().points;
+  const double left = 100.0 / road.length();  // share of the points, which are evenly spaced
+  points.resize(static_cast<std::size_t>((1.0 - left) * static_cast<double>(points.size())));
+  b.scene.end_s = b.scene.vehicle.stop_s = road.length() - 100.5;
 }
 
 void stop_and_reverse(Builder& b) {

@@ -48,7 +48,7 @@ TruePose RecordedDrive::truth_at(Time stamp) const {
 RecordedDrive record_drive(const AccuracyScene& scene) {
   VehicleSimulation vehicle(scene.reference, scene.vehicle);
   RecordedDrive drive;
-  drive.road = {vehicle.path(), scene.lanes, scene.vehicle.paint.lines};
+  drive.road = {vehicle.path(), scene.lanes, scene.vehicle.paint.lines, scene.end_s};
   drive.navigation = {"map", scene.lines};
   drive.start = kStart;
   drive.end = kStart + from_seconds(scene.duration);

@@ -40,10 +40,11 @@ std::vector<RoadPlace> TrueRoad::ahead(const TrueLane& lane, double s,
   Walk walk(path, lane.l, s);
   RoadPlace here = walk.at(s);
   double walked = 0.0;
+  const double end = path.ends == Ends::kOpen ? std::min(end_s, path.length()) : end_s;
   for (const double distance : distances) {
     for (RoadPlace next = walk.at(here.s + kStep);; next = walk.at(here.s + kStep)) {
       const double length = (next.position - here.position).norm();
-      if (path.ends == Ends::kOpen && next.s > path.length()) return places;
+      if (next.s > end) return places;
       if (walked + length > distance) {
         places.push_back(walk.at(here.s + kStep * (distance - walked) / length));
         break;

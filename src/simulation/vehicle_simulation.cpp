@@ -25,6 +25,7 @@ VehicleSimulationConfig checked(const VehicleSimulationConfig& config) {
 std::vector<std::string> VehicleSimulationConfig::validate() const {
   std::vector<std::string> faults;
   check_range("start_s", start_s, 0.0, 1e7, faults);
+  check_range("stop_s", stop_s, 0.0, 1e7, faults);
   check_range("wander", wander, 0.0, 5.0, faults);
   check_range("wander_wavelength", wander_wavelength, 20.0, 1e4, faults);
   check_range("max_speed", speed.max_speed, 0.1, 100.0, faults);
@@ -54,7 +55,7 @@ std::vector<std::string> VehicleSimulationConfig::validate() const {
 VehicleSimulation::VehicleSimulation(const RecordedLine& line, const VehicleSimulationConfig& config)
     : config_(checked(config)),
       path_(make_drive_path(line)),
-      speed_profile_(path_, config.speed),
+      speed_profile_(path_, config.speed, config.stop_s),
       wander_(config.wander, config.wander_wavelength, config.seed),
       localization_noise_(config.seed, 0),
       chassis_noise_(config.seed, 1),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct AccuracyScene {
   SceneGroup group = SceneGroup::kWithLine;
   RecordedLine reference;  ///< the road's reference curve, finely sampled
   std::vector<TrueLane> lanes;
-  std::vector<RecordedLine> lines;  ///< as recorded: with their errors
-  VehicleSimulationConfig vehicle;  ///< drives along `reference`
+  std::vector<RecordedLine> lines;                         ///< as recorded: with their errors
+  double end_s = std::numeric_limits<double>::infinity();  ///< [m] along `reference`, where the lines end
+  VehicleSimulationConfig vehicle;                         ///< drives along `reference`
   LaneSource lane_source = LaneSource::kOfflineGenerated;
   double duration = 90.0;  ///< [s]
 };
