@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "relative_map/io/navigation_line_file.hpp"
 #include "relative_map/simulation/accuracy_report.hpp"
 
 extern char** environ;
@@ -27,6 +28,7 @@ that the node's own pipeline makes of them with the true lanes.
   --seeds N        drives of each scene, each on a road of its own (3)
   --scale F        errors F times as large as usual (1)
   --scene NAME     this scene only; may be given again
+  --line FILE      a drive along this navigation line, taken for the center of a lane; may be given again
   --method NAME    this method only; may be given again
   --csv FILE       also write the table to FILE
   --plot DIR       write every map's errors to DIR/maps.csv and draw them there, with python3 and matplotlib
@@ -36,7 +38,8 @@ that the node's own pipeline makes of them with the true lanes.
 Columns: lateral error of the current lane's centerline, at points of the true center so far ahead of the vehicle.
 It counts 2 m at most, and a missing lane counts that much. Border: both boundaries, width: both half widths, head.:
 heading, all three 10 m ahead. Jitter: how far the center moves from tick to tick, at points of the road. Usable: maps
-whose lane covers the next 30 m and is within 1.5 m of the truth at 10 m. Totals take all maps of a group together;
+whose lane covers the next 30 m and is within 1.5 m of the truth at 10 m. Cost:
+median time of a map, its inputs included. Totals take all maps of a group together;
 the first second of each drive does not count.
 
 Exit codes: 0 done, 1 a map broke the output contract or a file could not be written, 2 bad arguments.
@@ -77,6 +80,8 @@ Options parse(const std::vector<std::string>& words) {
       options.benchmark.scale = number_of(name, value(), 0.0, 10.0);
     } else if (name == "--scene") {
       options.benchmark.scenes.push_back(value());
+    } else if (name == "--line") {
+      options.benchmark.lines.push_back(read_navigation_line(value()));
     } else if (name == "--method") {
       options.benchmark.methods.push_back(value());
     } else if (name == "--csv") {

@@ -55,10 +55,10 @@ void print_head(std::ostream& out) {
   out << names("", "") << " " << padded("center, RMS [m] at [m] ahead", block) << "| "
       << padded("center, 95th percentile [m] at [m] ahead", block) << "|" << cell("border") << cell("width")
       << cell("head.") << " |" << cell("jitter") << cell("jitter") << " |" << cell("usable") << cell("contr.")
-      << "\n"
+      << cell("cost") << "\n"
       << names("scene", "method") << distances << " |" << distances << " |" << cell("[m]") << cell("[m]")
       << cell("[deg]") << " |" << cell("10 [m]") << cell("30 [m]") << " |" << cell("[%]") << cell("viol.")
-      << "\n";
+      << cell("[us]") << "\n";
 }
 
 void print_row(const AccuracyRow& row, std::ostream& out) {
@@ -69,7 +69,7 @@ void print_row(const AccuracyRow& row, std::ostream& out) {
   out << " |" << cell(row.boundary.rms()) << cell(row.half_width.rms())
       << cell(row.heading.rms() * 180.0 / kPi) << " |" << cell(row.jitter_10.rms())
       << cell(row.jitter_30.rms()) << " |" << cell(100.0 * share_of_usable(row), 2)
-      << cell(static_cast<double>(row.violations), 0) << "\n";
+      << cell(static_cast<double>(row.violations), 0) << cell(1e6 * row.cost.median(), 0) << "\n";
 }
 
 /// Comma-separated, and empty where there is no figure.
@@ -128,7 +128,8 @@ void write_table(const BenchmarkResult& result, std::ostream& out) {
          << "jitter_10"
          << "jitter_30"
          << "usable"
-         << "violations";
+         << "violations"
+         << "cost";
   }
   for (const std::vector<AccuracyRow>* rows : {&result.rows, &result.totals}) {
     for (const AccuracyRow& row : *rows) {
@@ -137,7 +138,8 @@ void write_table(const BenchmarkResult& result, std::ostream& out) {
       for (const ErrorStatistics& error : row.center) line << error.rms();
       for (const ErrorStatistics& error : row.center) line << error.percentile_95();
       line << row.boundary.rms() << row.half_width.rms() << row.heading.rms() << row.jitter_10.rms()
-           << row.jitter_30.rms() << share_of_usable(row) << static_cast<double>(row.violations);
+           << row.jitter_30.rms() << share_of_usable(row) << static_cast<double>(row.violations)
+           << row.cost.median();
     }
   }
 }

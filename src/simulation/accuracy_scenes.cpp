@@ -150,6 +150,29 @@ void perception_country(Builder& b) {
   perception(b, country_road(b.seed, 1600.0), 1, 18.0);
 }
 
+void bad_markers(Builder& b, MarkerFault fault) {
+  b.scene.group = SceneGroup::kBadMarkers;
+  b.scene.marker_fault = fault;
+  b.lay(country_road(b.seed, 1200.0), 1, 1.75);
+  b.drive(18.0, 60.0);
+}
+
+void lane_off(Builder& b) {
+  bad_markers(b, MarkerFault::kLaneOff);
+}
+
+void mirrored(Builder& b) {
+  bad_markers(b, MarkerFault::kMirrored);
+}
+
+void frozen(Builder& b) {
+  bad_markers(b, MarkerFault::kFrozen);
+}
+
+void future(Builder& b) {
+  bad_markers(b, MarkerFault::kFuture);
+}
+
 void perfect(Builder& b) {
   b.scene.group = SceneGroup::kPerfect;
   VehicleSimulationConfig& vehicle = b.scene.vehicle;
@@ -176,6 +199,10 @@ const std::vector<std::pair<std::string, std::function<void(Builder&)>>>& scenes
       {"drift-three-lines", drift_3},
       {"perception-motorway", perception_motorway},
       {"perception-country", perception_country},
+      {"bad-lane-off", lane_off},
+      {"bad-mirrored", mirrored},
+      {"bad-frozen", frozen},
+      {"bad-future", future},
       {"perfect", perfect}};
   return all;
 }
@@ -228,6 +255,22 @@ AccuracyScene make_accuracy_scene(const std::string& name, std::uint64_t seed, d
     return std::move(builder.scene);
   }
   throw std::invalid_argument("there is no scene '" + name + "'");
+}
+
+AccuracyScene make_line_scene(const RecordedLine& line, std::uint64_t seed, double scale) {
+  const double half_width = 1.75;
+  AccuracyScene scene;
+  scene.name = line.name;
+  scene.reference = line;
+  scene.lanes.push_back({0.0, half_width, 0, 1});
+  scene.vehicle.seed = seed;
+  scene.vehicle.paint.lines = {{half_width, BoundaryType::kSolidWhite},
+                               {-half_width, BoundaryType::kSolidWhite}};
+  set_usual_errors(scene.vehicle, scale);
+  scene.lines.push_back(record_line(line, scene.vehicle.errors.recording, seed + 1000000));
+  scene.lines.front().priority = 0;
+  scene.vehicle.speed.max_speed = 15.0;
+  return scene;
 }
 
 }  // namespace relative_map::core

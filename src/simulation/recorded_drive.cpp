@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "relative_map/simulation/random_process.hpp"
 
@@ -28,6 +30,33 @@ TruePose true_pose(const VehicleSimulation& vehicle, Time now) {
   const Pose2 pose = vehicle.map_from_base();
   return {now, Pose2(pose.position() - vehicle.path().origin, pose.heading()), vehicle.s(), vehicle.l()};
 }
+
+/// Spoils all the markers of a drive in one way.
+class Spoiler {
+ public:
+  explicit Spoiler(const AccuracyScene& scene)
+      : fault_(scene.marker_fault), lane_width_(2.0 * scene.lanes.front().half_width) {}
+
+  void spoil(LaneMarkers& markers) {
+    if (fault_ == MarkerFault::kLaneOff) {
+      for (LaneMarker* marker : {&markers.left, &markers.right}) marker->cubic.c0 += lane_width_;
+    } else if (fault_ == MarkerFault::kMirrored) {
+      std::swap(markers.left, markers.right);
+    } else if (fault_ == MarkerFault::kFrozen) {
+      if (!first_) first_ = markers;
+      const Time stamp = markers.stamp;
+      markers = *first_;
+      markers.stamp = stamp;
+    } else if (fault_ == MarkerFault::kFuture) {
+      markers.stamp += std::chrono::seconds(1);
+    }
+  }
+
+ private:
+  MarkerFault fault_;
+  double lane_width_;  ///< [m]
+  std::optional<LaneMarkers> first_;
+};
 
 }  // namespace
 
@@ -58,6 +87,7 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
   Beat localization = random_beat(engine, 50.0, 100.0), chassis = random_beat(engine, 50.0, 100.0),
        markers = random_beat(engine, 10.0, 15.0);
   const Time duration = from_seconds(scene.duration);
+  Spoiler spoiler(scene);
   Time last_marker_message = kStart;
   for (;;) {
     Beat* next = std::min({&truth, &localization, &chassis, &markers},
@@ -78,6 +108,7 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
     } else if (next == &markers) {
       LaneMarkers message = vehicle.measure_lane_markers();
       message.stamp = now;
+      spoiler.spoil(message);
       // One camera's messages do not overtake each other.
       last_marker_message = std::max(last_marker_message, now + vehicle.marker_latency());
       drive.deliveries.push_back({last_marker_message, message});

@@ -112,6 +112,54 @@ TEST(AccuracyBenchmark, MessagesArriveInOrderAndMarkersLate) {
   EXPECT_LE(markers, 15 * 15 + 1);
 }
 
+std::vector<LaneMarkers> images_of(const RecordedDrive& drive) {
+  std::vector<LaneMarkers> images;
+  for (const Delivery& delivery : drive.deliveries) {
+    if (const auto* markers = std::get_if<LaneMarkers>(&delivery.message)) images.push_back(*markers);
+  }
+  return images;
+}
+
+TEST(AccuracyBenchmark, BadMarkersAreBadInTheWayTheirSceneSays) {
+  AccuracyScene scene = short_scene("bad-frozen");
+  scene.marker_fault = MarkerFault::kNone;
+  const std::vector<LaneMarkers> good = images_of(record_drive(scene));
+  const auto spoilt = [&](MarkerFault fault) {
+    scene.marker_fault = fault;
+    return images_of(record_drive(scene));
+  };
+  const std::size_t i = 100;
+  ASSERT_GT(good[i].left.quality + good[i].right.quality, 0.0);
+  EXPECT_NEAR(spoilt(MarkerFault::kLaneOff)[i].left.cubic.c0, good[i].left.cubic.c0 + 3.5, 1e-12);
+  EXPECT_NEAR(spoilt(MarkerFault::kLaneOff)[i].right.cubic.c0, good[i].right.cubic.c0 + 3.5, 1e-12);
+  EXPECT_EQ(spoilt(MarkerFault::kMirrored)[i].left.cubic.c0, good[i].right.cubic.c0);
+  EXPECT_EQ(spoilt(MarkerFault::kMirrored)[i].right.cubic.c0, good[i].left.cubic.c0);
+  EXPECT_EQ(spoilt(MarkerFault::kFrozen)[i].left.cubic.c1, good[0].left.cubic.c1);
+  EXPECT_EQ(spoilt(MarkerFault::kFrozen)[i].stamp, good[i].stamp);
+  EXPECT_EQ(spoilt(MarkerFault::kFuture)[i].stamp, good[i].stamp + std::chrono::seconds(1));
+}
+
+TEST(AccuracyBenchmark, ALineOfOnesOwnIsAScene) {
+  RecordedLine line = demo_road(Pose2(Point2(691188.0, 3118142.0), 1.0)).lane(0.0, 0.5, "mine");
+  line.priority = 3;
+  const AccuracyScene scene = make_line_scene(line, 1, 0.0);
+  const AccuracyRow row = row_of(map_drive(record_drive(scene), PipelineConfig(), false));
+  EXPECT_EQ(scene.name, "mine");
+  EXPECT_EQ(row.usable, row.usable_of);
+  EXPECT_LT(row.center[4].rms(), 1e-3);
+
+  BenchmarkOptions options;
+  options.seeds = 1;
+  options.lines = {line};
+  options.methods = {"line"};
+  const BenchmarkResult result = run_benchmark(options);
+  ASSERT_EQ(result.rows.size(), 1u);
+  EXPECT_EQ(result.rows[0].scene, "mine");
+  EXPECT_GT(result.rows[0].center[4].rms(), 0.1);
+  options.scenes = {"urban"};
+  EXPECT_EQ(run_benchmark(options).rows.size(), 2u);
+}
+
 TEST(AccuracyBenchmark, TotalsPoolTheMapsOfAGroup) {
   BenchmarkOptions options;
   options.seeds = 1;
@@ -151,6 +199,7 @@ TEST(ErrorStatistics, RmsAnd95thPercentile) {
   EXPECT_TRUE(std::isnan(statistics.percentile_95()));
   for (int i = 0; i <= 100; ++i) statistics.add(i % 2 == 0 ? 0.01 * i : -0.01 * i);
   EXPECT_NEAR(statistics.percentile_95(), 0.95, 1e-9);
+  EXPECT_NEAR(statistics.median(), 0.5, 1e-9);
   EXPECT_NEAR(statistics.rms(), std::sqrt(201.0 / 6.0) / 10.0, 1e-2);
 }
 
