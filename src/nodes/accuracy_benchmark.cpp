@@ -27,6 +27,7 @@ that the node's own pipeline makes of them with the true lanes.
 
   --seeds N        drives of each scene, each on a road of its own (3)
   --scale F        errors F times as large as usual (1)
+  --harsh          cameras that fail twice as often, with noise that lasts longer and is common to all paint
   --scene NAME     this scene only; may be given again
   --line FILE      a drive along this navigation line, taken for the center of a lane; may be given again
   --method NAME    this method only; may be given again
@@ -77,7 +78,9 @@ Options parse(const std::vector<std::string>& words) {
     } else if (name == "--seeds") {
       options.benchmark.seeds = static_cast<std::uint64_t>(number_of(name, value(), 1.0, 1e4));
     } else if (name == "--scale") {
-      options.benchmark.scale = number_of(name, value(), 0.0, 10.0);
+      options.benchmark.level.scale = number_of(name, value(), 0.0, 10.0);
+    } else if (name == "--harsh") {
+      options.benchmark.level.harsh = true;
     } else if (name == "--scene") {
       options.benchmark.scenes.push_back(value());
     } else if (name == "--line") {
@@ -131,8 +134,9 @@ void draw(const std::string& folder) {
 
 /// 1 if a map broke the contract.
 int report(const Options& options, const BenchmarkResult& result) {
-  std::cout << options.benchmark.seeds << " drives of each scene, errors " << options.benchmark.scale
-            << " times as large as usual\n\n";
+  std::cout << options.benchmark.seeds << " drives of each scene, errors " << options.benchmark.level.scale
+            << " times as large as usual" << (options.benchmark.level.harsh ? ", a harsh camera" : "")
+            << "\n\n";
   print_table(result, std::cout);
   std::printf(
       "\n%.0f s of driving, simulated %.0f times as fast as real time, mapped and measured %.0f times as "

@@ -108,6 +108,7 @@ void read_errors(Reader& reader, core::ErrorParam& errors) {
   reader.read("errors/recording_wander_length", errors.recording.wander_length);
   reader.read("errors/marker_correlated_share", errors.markers.correlated_share);
   reader.read("errors/marker_correlation_time", errors.markers.correlation_time);
+  reader.read("errors/marker_common_share", errors.markers.common_share);
   reader.read("errors/view_range_change", errors.markers.view_range_change);
   reader.read("errors/view_range_time", errors.markers.view_range_time);
   reader.read("errors/min_view_range", errors.markers.min_view_range);

@@ -180,13 +180,13 @@ using SceneMaker = std::function<AccuracyScene(std::uint64_t seed)>;
 std::vector<SceneMaker> scene_makers(const BenchmarkOptions& options) {
   std::vector<SceneMaker> makers;
   for (const RecordedLine& line : options.lines) {
-    makers.emplace_back([&](std::uint64_t seed) { return make_line_scene(line, seed, options.scale); });
+    makers.emplace_back([&](std::uint64_t seed) { return make_line_scene(line, seed, options.level); });
   }
   if (options.scenes.empty() && !options.lines.empty()) return makers;
   for (const std::string& name : selected(
            accuracy_scene_names(), options.scenes, [](const std::string& n) { return n; }, "scene")) {
     makers.emplace_back(
-        [&options, name](std::uint64_t seed) { return make_accuracy_scene(name, seed, options.scale); });
+        [&options, name](std::uint64_t seed) { return make_accuracy_scene(name, seed, options.level); });
   }
   return makers;
 }

@@ -10,8 +10,8 @@
 namespace relative_map::core {
 namespace {
 
-AccuracyScene short_scene(const std::string& name, std::uint64_t seed = 1, double scale = 1.0) {
-  AccuracyScene scene = make_accuracy_scene(name, seed, scale);
+AccuracyScene short_scene(const std::string& name, std::uint64_t seed = 1, const ErrorLevel& level = {}) {
+  AccuracyScene scene = make_accuracy_scene(name, seed, level);
   scene.duration = 15.0;
   return scene;
 }
@@ -32,14 +32,14 @@ TEST(AccuracyBenchmark, EverySceneIsMappedByEveryMethodWithoutAViolation) {
           row_of(map_drive(drive, method.config(scene.lane_source), method.deliver_markers));
       EXPECT_EQ(row.violations, 0u) << name << ", " << method.name << ": " << row.violation;
       EXPECT_EQ(row.center.front().count(), 141u) << name;
-      EXPECT_GT(row.usable, 50u) << name << ", " << method.name;
+      EXPECT_GT(row.usable, scene.group == SceneGroup::kDrifting ? 20u : 50u) << name << ", " << method.name;
     }
   }
 }
 
 TEST(AccuracyBenchmark, WithoutErrorsTheLineIsTheLane) {
   for (const char* name : {"motorway", "country", "lane-change"}) {
-    const AccuracyScene scene = short_scene(name, 2, 0.0);
+    const AccuracyScene scene = short_scene(name, 2, {0.0});
     const RecordedDrive drive = record_drive(scene);
     const AccuracyRow row = row_of(map_drive(drive, PipelineConfig(), false));
     // Pose by pose, but for what lies between the vertices of either polyline.
@@ -66,13 +66,29 @@ TEST(AccuracyBenchmark, ErrorsOfTheLineGrowWithTheScale) {
     BenchmarkOptions options;
     options.scenes = {"motorway"};
     options.methods = {"line"};
-    options.scale = scale;
+    options.level.scale = scale;
     return run_benchmark(options).rows.at(0).center[2].rms();
   };
   const double usual = error(1.0), twice = error(2.0);
   EXPECT_GT(usual, 0.15);
   EXPECT_LT(usual, 0.6);
   EXPECT_NEAR(twice / usual, 2.0, 0.1);
+}
+
+TEST(AccuracyBenchmark, AHarshCameraFailsMoreOften) {
+  const auto seen = [](bool harsh) {
+    AccuracyScene scene = make_accuracy_scene("motorway", 1, {1.0, harsh});
+    int sides = 0, images = 0;
+    for (const Delivery& delivery : record_drive(scene).deliveries) {
+      const auto* markers = std::get_if<LaneMarkers>(&delivery.message);
+      if (markers == nullptr) continue;
+      ++images;
+      sides += (markers->left.quality > 0.0 ? 1 : 0) + (markers->right.quality > 0.0 ? 1 : 0);
+    }
+    return 0.5 * sides / images;
+  };
+  EXPECT_GT(seen(false), 0.85);
+  EXPECT_LT(seen(true), seen(false) - 0.02);
 }
 
 TEST(AccuracyBenchmark, TheSameSeedGivesTheSameDrive) {
@@ -142,7 +158,7 @@ TEST(AccuracyBenchmark, BadMarkersAreBadInTheWayTheirSceneSays) {
 TEST(AccuracyBenchmark, ALineOfOnesOwnIsAScene) {
   RecordedLine line = demo_road(Pose2(Point2(691188.0, 3118142.0), 1.0)).lane(0.0, 0.5, "mine");
   line.priority = 3;
-  const AccuracyScene scene = make_line_scene(line, 1, 0.0);
+  const AccuracyScene scene = make_line_scene(line, 1, {0.0});
   const AccuracyRow row = row_of(map_drive(record_drive(scene), PipelineConfig(), false));
   EXPECT_EQ(scene.name, "mine");
   EXPECT_EQ(row.usable, row.usable_of);

@@ -54,7 +54,7 @@ std::vector<double> errors_at(double x, const MarkerErrorParam& param, const Cub
 
 TEST(MarkerErrors, NoiseGrowsWithDistanceToAQuarterOfAMetre) {
   VehicleSimulationConfig config;
-  set_usual_errors(config, 1.0);
+  set_usual_errors(config);
   const NoiseParam& usual = config.noise;
   const CubicNoise noise{usual.marker_c0, usual.marker_c1, usual.marker_c2, usual.marker_c3};
   MarkerErrorParam param;
@@ -77,6 +77,22 @@ TEST(MarkerErrors, OfTheNoiseAShareLasts) {
   EXPECT_NEAR(kept(0.5, 12), 0.5 * std::exp(-12.0 * kImage), 0.03);
   EXPECT_NEAR(kept(0.0, 1), 0.0, 0.03);
   EXPECT_NEAR(kept(1.0, 1), std::exp(-kImage), 0.03);
+}
+
+TEST(MarkerErrors, OfTheNoiseAShareIsCommonToAllPaint) {
+  MarkerErrorParam param;
+  param.common_share = 0.7;
+  MarkerErrors errors(param, {0.03, 0.0, 0.0, 0.0}, 2);
+  std::vector<double> left;
+  double product = 0.0;
+  for (int i = 0; i < 40000; ++i) {
+    LaneMarkers markers = true_markers();
+    errors.spoil(markers, kImage * i);
+    left.push_back(markers.left.cubic.c0 - 1.75);
+    product += left.back() * (markers.right.cubic.c0 + 1.75) / 40000.0;
+  }
+  EXPECT_NEAR(rms(left), 0.03, 0.001);
+  EXPECT_NEAR(product / (0.03 * 0.03), 0.7, 0.03);
 }
 
 TEST(MarkerErrors, ViewRangeChangesSlowlyWithinItsLimits) {

@@ -12,7 +12,7 @@ namespace {
 
 std::map<std::string, double> usual_errors() {
   VehicleSimulationConfig config;
-  set_usual_errors(config, 1.0);
+  set_usual_errors(config);
   const NoiseParam& noise = config.noise;
   const LocalizationErrorParam& localization = config.errors.localization;
   const RecordingErrorParam& recording = config.errors.recording;
@@ -38,6 +38,7 @@ std::map<std::string, double> usual_errors() {
           {"errors/recording_wander_length", recording.wander_length},
           {"errors/marker_correlated_share", markers.correlated_share},
           {"errors/marker_correlation_time", markers.correlation_time},
+          {"errors/marker_common_share", markers.common_share},
           {"errors/view_range_change", markers.view_range_change},
           {"errors/view_range_time", markers.view_range_time},
           {"errors/min_view_range", markers.min_view_range},

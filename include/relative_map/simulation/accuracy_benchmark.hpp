@@ -77,7 +77,7 @@ struct AccuracyRow {
 
 struct BenchmarkOptions {
   std::uint64_t seeds = 3;
-  double scale = 1.0;
+  ErrorLevel level;
   std::vector<std::string> scenes;   ///< none: all, if there are no `lines`
   std::vector<RecordedLine> lines;   ///< to be driven on, too
   std::vector<std::string> methods;  ///< none: all

@@ -22,6 +22,12 @@ enum class MarkerFault {
   kFuture,    ///< stamped a second ahead
 };
 
+struct ErrorLevel {
+  double scale = 1.0;  ///< errors so many times as large as usual; rates, delays and durations are not scaled
+  bool harsh =
+      false;  ///< cameras fail twice as often, and their noise lasts longer and is common to all paint
+};
+
 /// A drive whose truth is known.
 struct AccuracyScene {
   std::string name;
@@ -38,16 +44,15 @@ struct AccuracyScene {
 
 std::vector<std::string> accuracy_scene_names();
 
-/// The seed gives the road's shape and all errors, which are `scale` times as large as usual.
+/// The seed gives the road's shape and all errors.
 /// Throws std::invalid_argument if there is no scene of that name.
-AccuracyScene make_accuracy_scene(const std::string& name, std::uint64_t seed, double scale = 1.0);
+AccuracyScene make_accuracy_scene(const std::string& name, std::uint64_t seed, const ErrorLevel& level = {});
 
 /// A drive along a line that has really been driven: `line` is taken for the center of the only lane, and
 /// recorded anew. Throws std::invalid_argument if it can't be driven on.
-AccuracyScene make_line_scene(const RecordedLine& line, std::uint64_t seed, double scale = 1.0);
+AccuracyScene make_line_scene(const RecordedLine& line, std::uint64_t seed, const ErrorLevel& level = {});
 
-/// The errors of localization, recording and camera that are usual on the road, `scale` times as large.
-/// Rates, delays and durations are not scaled.
-void set_usual_errors(VehicleSimulationConfig& config, double scale);
+/// The errors that localization, recorded lines and cameras usually have.
+void set_usual_errors(VehicleSimulationConfig& config, const ErrorLevel& level = {});
 
 }  // namespace relative_map::core
