@@ -1,14 +1,21 @@
 // Measures the pipeline's maps against the truth of simulated drives. No ROS master is needed.
-#include <cmath>
+#include <spawn.h>
+#include <sys/wait.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "relative_map/simulation/accuracy_benchmark.hpp"
+#include "relative_map/io/navigation_line_file.hpp"
+#include "relative_map/simulation/accuracy_report.hpp"
+
+extern char** environ;
 
 namespace relative_map::core {
 namespace {
@@ -18,17 +25,30 @@ constexpr const char* kHelp = R"(Usage: rosrun relative_map accuracy_benchmark [
 Drives simulated roads with the errors that localization, recorded lines and cameras have, and compares the maps
 that the node's own pipeline makes of them with the true lanes.
 
-  --seeds N        drives of each scene (3)
+  --seeds N        drives of each scene, each on a road of its own (3)
   --scale F        errors F times as large as usual (1)
+  --harsh          cameras that fail twice as often, with noise that lasts longer and is common to all paint
   --scene NAME     this scene only; may be given again
+  --line FILE      a drive along this navigation line, taken for the center of a lane; may be given again
   --method NAME    this method only; may be given again
+  --csv FILE       also write the table to FILE
+  --plot DIR       write every map's errors to DIR/maps.csv and draw them there, with python3 and matplotlib
+  --list           names of scenes and methods
   --help           this text
 
-Exit codes: 0 done, 1 a map broke the output contract, 2 bad arguments.
+Columns: lateral error of the current lane's centerline, at points of the true center so far ahead of the vehicle.
+It counts 2 m at most, and a missing lane counts that much. Border: both boundaries, width: both half widths, head.:
+heading, all three 10 m ahead. Jitter: how far the center moves from tick to tick, at points of the road. Usable: maps
+whose lane covers the next 30 m and is within 1.5 m of the truth at 10 m. Cost:
+median time of a map, its inputs included. Totals take all maps of a group together;
+the first second of each drive does not count.
+
+Exit codes: 0 done, 1 a map broke the output contract or a file could not be written, 2 bad arguments.
 )";
 
 struct Options {
-  bool help = false;
+  bool help = false, list = false;
+  std::string csv, plot;
   BenchmarkOptions benchmark;
 };
 
@@ -36,8 +56,9 @@ double number_of(const std::string& option, const std::string& text, double low,
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !(number >= low && number <= high)) {
-    throw std::invalid_argument(option + " is '" + text + "', but must be a number in [" +
-                                std::to_string(low) + ", " + std::to_string(high) + "]");
+    std::ostringstream fault;
+    fault << option << " is '" << text << "', but must be a number in [" << low << ", " << high << "]";
+    throw std::invalid_argument(fault.str());
   }
   return number;
 }
@@ -46,69 +67,120 @@ Options parse(const std::vector<std::string>& words) {
   Options options;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& name = words[i];
+    const auto value = [&] {
+      if (i + 1 == words.size()) throw std::invalid_argument(name + " lacks a value");
+      return words[++i];
+    };
     if (name == "--help" || name == "-h") {
       options.help = true;
-      return options;
-    }
-    if (name != "--seeds" && name != "--scale" && name != "--scene" && name != "--method") {
+    } else if (name == "--list") {
+      options.list = true;
+    } else if (name == "--seeds") {
+      options.benchmark.seeds = static_cast<std::uint64_t>(number_of(name, value(), 1.0, 1e4));
+    } else if (name == "--scale") {
+      options.benchmark.level.scale = number_of(name, value(), 0.0, 10.0);
+    } else if (name == "--harsh") {
+      options.benchmark.level.harsh = true;
+    } else if (name == "--scene") {
+      options.benchmark.scenes.push_back(value());
+    } else if (name == "--line") {
+      options.benchmark.lines.push_back(read_navigation_line(value()));
+    } else if (name == "--method") {
+      options.benchmark.methods.push_back(value());
+    } else if (name == "--csv") {
+      options.csv = value();
+    } else if (name == "--plot") {
+      options.plot = value();
+    } else {
       throw std::invalid_argument("unknown argument '" + name + "'");
     }
-    if (i + 1 == words.size()) throw std::invalid_argument(name + " lacks a value");
-    const std::string& value = words[++i];
-    if (name == "--seeds")
-      options.benchmark.seeds = static_cast<std::uint64_t>(number_of(name, value, 1.0, 1e4));
-    if (name == "--scale") options.benchmark.scale = number_of(name, value, 0.0, 10.0);
-    if (name == "--scene") options.benchmark.scenes.push_back(value);
-    if (name == "--method") options.benchmark.methods.push_back(value);
   }
   return options;
 }
 
-void print_header() {
-  std::printf("%-20s %-13s|%41s |%41s | %6s %6s %6s | %6s %6s | %6s %5s\n", "", "",
-              "RMS of the center [m], at [m] ahead", "95th percentile [m], at [m] ahead", "border", "width",
-              "head.", "jit.10", "jit.30", "usable", "viol.");
-  std::printf("%-20s %-13s|", "scene", "method");
-  for (int i = 0; i < 2; ++i) {
-    for (const double distance : kErrorDistances) std::printf(" %6.0f", distance);
-    std::printf("%s", i == 0 ? "|" : "|");
-  }
-  std::printf(" %6s %6s %6s | %6s %6s | %6s %5s\n", "[m]", "[m]", "[deg]", "[m]", "[m]", "[%]", "");
+void list() {
+  std::cout << "scenes:";
+  for (const std::string& name : accuracy_scene_names()) std::cout << " " << name;
+  std::cout << "\nmethods:";
+  for (const AccuracyMethod& method : accuracy_methods()) std::cout << " " << method.name;
+  std::cout << "\n";
 }
 
-void print(const AccuracyRow& row) {
-  std::printf("%-20s %-13s|", row.scene.c_str(), row.method.c_str());
-  for (const ErrorStatistics& error : row.center) std::printf(" %6.3f", error.rms());
-  std::printf("|");
-  for (const ErrorStatistics& error : row.center) std::printf(" %6.3f", error.percentile_95());
-  const double usable = row.usable_of == 0
-                            ? std::nan("")
-                            : 100.0 * static_cast<double>(row.usable) / static_cast<double>(row.usable_of);
-  std::printf("| %6.3f %6.3f %6.3f | %6.3f %6.3f | %6.2f %5zu\n", row.boundary.rms(), row.half_width.rms(),
-              row.heading.rms() * 180.0 / kPi, row.jitter_10.rms(), row.jitter_30.rms(), usable,
-              row.violations);
+std::ofstream open(const std::string& file) {
+  std::ofstream stream(file);
+  if (!stream) throw std::runtime_error(file + ": can't be written");
+  return stream;
+}
+
+void close(std::ofstream& stream, const std::string& file) {
+  stream.close();
+  if (!stream) throw std::runtime_error(file + ": can't be written");
+}
+
+/// The script lies beside this program.
+void draw(const std::string& folder) {
+  const auto script = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plot_accuracy.py";
+  std::vector<std::string> words = {"python3", script.string(), folder};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  int status = 0;
+  if (posix_spawnp(&child, "python3", nullptr, nullptr, arguments.data(), environ) != 0 ||
+      waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    throw std::runtime_error(folder + ": the maps are there, but could not be drawn by " + script.string());
+  }
+}
+
+/// 1 if a map broke the contract.
+int report(const Options& options, const BenchmarkResult& result) {
+  std::cout << options.benchmark.seeds << " drives of each scene, errors " << options.benchmark.level.scale
+            << " times as large as usual" << (options.benchmark.level.harsh ? ", a harsh camera" : "")
+            << "\n\n";
+  print_table(result, std::cout);
+  std::printf(
+      "\n%.0f s of driving, simulated %.0f times as fast as real time, mapped and measured %.0f times as "
+      "fast\n",
+      result.driven, result.driven / result.simulation_time, result.mapped / result.mapping_time);
+  int code = 0;
+  for (const AccuracyRow& row : result.rows) {
+    if (row.violations == 0) continue;
+    std::cout << row.scene << ", " << row.method << ": " << row.violation << "\n";
+    code = 1;
+  }
+  return code;
 }
 
 int run(const Options& options) {
-  const BenchmarkResult result = run_benchmark(options.benchmark);
-  std::printf("%llu seeds a scene, errors %g times as large as usual\n\n",
-              static_cast<unsigned long long>(options.benchmark.seeds), options.benchmark.scale);
-  print_header();
-  for (const AccuracyRow& row : result.rows) print(row);
-  std::printf("\n");
-  for (const AccuracyRow& row : result.totals) print(row);
-  std::printf(
-      "\n%.0f s were driven, %.0f times as fast as real time; mapping and measuring ran at %.0f times real "
-      "time\n",
-      result.driven, result.driven / result.simulation_time, result.mapped / result.mapping_time);
-  std::size_t violations = 0;
-  for (const AccuracyRow& row : result.rows) {
-    violations += row.violations;
-    if (row.violations > 0) {
-      std::printf("%s, %s: %s\n", row.scene.c_str(), row.method.c_str(), row.violation.c_str());
-    }
+  if (options.help || options.list) {
+    options.help ? void(std::cout << kHelp) : list();
+    return 0;
   }
-  return violations == 0 ? 0 : 1;
+  std::ofstream maps;
+  const std::string maps_file = options.plot + "/maps.csv";
+  DriveObserver observer;
+  if (!options.plot.empty()) {
+    std::filesystem::create_directories(options.plot);
+    maps = open(maps_file);
+    write_maps_header(maps);
+    observer = [&](const AccuracyScene& scene, std::uint64_t seed, const AccuracyMethod& method,
+                   const std::vector<MeasuredMap>& measured) {
+      write_maps(scene, seed, method, measured, maps);
+    };
+  }
+  const BenchmarkResult result = run_benchmark(options.benchmark, observer);
+  const int code = report(options, result);
+  std::cout.flush();
+  if (!options.csv.empty()) {
+    std::ofstream table = open(options.csv);
+    write_table(result, table);
+    close(table, options.csv);
+  }
+  if (!options.plot.empty()) {
+    close(maps, maps_file);
+    draw(options.plot);
+  }
+  return code;
 }
 
 }  // namespace
@@ -116,14 +188,12 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   try {
-    const auto options = relative_map::core::parse({argv + 1, argv + argc});
-    if (options.help) {
-      std::cout << relative_map::core::kHelp;
-      return 0;
-    }
-    return relative_map::core::run(options);
+    return relative_map::core::run(relative_map::core::parse({argv + 1, argv + argc}));
   } catch (const std::invalid_argument& fault) {
     std::cerr << "accuracy_benchmark: " << fault.what() << "; see accuracy_benchmark --help\n";
     return 2;
+  } catch (const std::exception& fault) {
+    std::cerr << "accuracy_benchmark: " << fault.what() << "\n";
+    return 1;
   }
 }

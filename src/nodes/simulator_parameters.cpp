@@ -88,6 +88,39 @@ class Reader {
   std::set<std::string> known_;
 };
 
+void read_episode(Reader& reader, const std::string& name, core::EpisodeParam& episode) {
+  reader.read(name + "_interval", episode.interval);
+  reader.read(name + "_min_duration", episode.min_duration);
+  reader.read(name + "_max_duration", episode.max_duration);
+}
+
+void read_errors(Reader& reader, core::ErrorParam& errors) {
+  reader.read("errors/localization_bias", errors.localization.bias);
+  reader.read("errors/localization_bias_time", errors.localization.bias_time);
+  reader.read("errors/heading_bias", errors.localization.heading_bias);
+  reader.read("errors/heading_bias_time", errors.localization.heading_bias_time);
+  reader.read("errors/drift", errors.localization.drift);
+  reader.read("errors/drift_time", errors.localization.drift_time);
+  reader.read("errors/yaw_rate_bias", errors.localization.yaw_rate_bias);
+  reader.read("errors/speed_scale", errors.chassis.speed_scale);
+  reader.read("errors/recording_offset", errors.recording.offset);
+  reader.read("errors/recording_wander", errors.recording.wander);
+  reader.read("errors/recording_wander_length", errors.recording.wander_length);
+  reader.read("errors/marker_correlated_share", errors.markers.correlated_share);
+  reader.read("errors/marker_correlation_time", errors.markers.correlation_time);
+  reader.read("errors/marker_common_share", errors.markers.common_share);
+  reader.read("errors/view_range_change", errors.markers.view_range_change);
+  reader.read("errors/view_range_time", errors.markers.view_range_time);
+  reader.read("errors/min_view_range", errors.markers.min_view_range);
+  reader.read("errors/max_view_range", errors.markers.max_view_range);
+  read_episode(reader, "errors/dropout", errors.markers.dropout);
+  read_episode(reader, "errors/outlier", errors.markers.outlier);
+  reader.read("errors/min_jump", errors.markers.min_jump);
+  reader.read("errors/max_jump", errors.markers.max_jump);
+  reader.read("errors/min_latency", errors.markers.min_latency);
+  reader.read("errors/max_latency", errors.markers.max_latency);
+}
+
 void read_simulation(Reader& reader, core::VehicleSimulationConfig& config) {
   config.seed = static_cast<std::uint64_t>(reader.read("seed", 1, 0, std::numeric_limits<int>::max()));
   reader.read("start_s", config.start_s);
@@ -100,11 +133,17 @@ void read_simulation(Reader& reader, core::VehicleSimulationConfig& config) {
   reader.read("lane_half_width", config.paint.lane_half_width);
   reader.read("view_range", config.paint.view_range);
   reader.read("marker_quality", config.paint.quality);
+  reader.read("max_turn", config.paint.max_turn);
+  reader.read("max_residual", config.paint.max_residual);
   reader.read("noise/localization_position", config.noise.localization_position);
   reader.read("noise/localization_heading", config.noise.localization_heading);
   reader.read("noise/chassis_speed", config.noise.chassis_speed);
   reader.read("noise/marker_c0", config.noise.marker_c0);
   reader.read("noise/marker_c1", config.noise.marker_c1);
+  reader.read("noise/marker_c2", config.noise.marker_c2);
+  reader.read("noise/marker_c3", config.noise.marker_c3);
+  reader.read("noise/yaw_rate", config.noise.yaw_rate);
+  read_errors(reader, config.errors);
   const std::vector<std::string> faults = config.validate();
   reader.faults.insert(reader.faults.end(), faults.begin(), faults.end());
 }

@@ -2,7 +2,6 @@
 
 #include <geometry_msgs/TransformStamped.h>
 #include <relative_map/Chassis.h>
-#include <relative_map/LaneMarkers.h>
 #include <relative_map/LocalizationEstimate.h>
 #include <relative_map/NavigationInfo.h>
 #include <ros/ros.h>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "relative_map/ros/conversions.hpp"
+#include "relative_map/simulation/recording_errors.hpp"
 
 namespace relative_map {
 
@@ -74,7 +74,7 @@ VehicleSimulator::VehicleSimulator(ros::NodeHandle nh, SimulatorParameters param
       vehicle_(parameters_.lines[parameters_.drive_line], parameters_.simulation),
       sensors_{{{period_of(parameters_.localization_rate), &VehicleSimulator::publish_localization},
                 {period_of(parameters_.chassis_rate), &VehicleSimulator::publish_chassis},
-                {period_of(parameters_.lane_marker_rate), &VehicleSimulator::publish_lane_markers}}} {
+                {period_of(parameters_.lane_marker_rate), &VehicleSimulator::take_image}}} {
   localization_publisher_ = nh.advertise<LocalizationEstimate>("localization", 10);
   chassis_publisher_ = nh.advertise<Chassis>("chassis", 10);
   lane_markers_publisher_ = nh.advertise<LaneMarkers>("perception/lane_markers", 10);
@@ -89,6 +89,7 @@ void VehicleSimulator::run() {
   publish_navigation();
   while (ros::ok()) {
     Sensor& sensor = next_sensor();
+    publish_lane_markers(sensor.due);
     wait_until(sensor.due);
     vehicle_.step(core::to_seconds(sensor.due - vehicle_.time()));
     if (finished()) return;
@@ -143,7 +144,13 @@ void VehicleSimulator::publish_navigation() {
   static_broadcaster_.sendTransform(map_from_local_map);
 
   if (!parameters_.publish_navigation) return;
-  NavigationInfo message = to_message(core::NavigationInfo{parameters_.map_frame, parameters_.lines});
+  core::NavigationInfo recorded{parameters_.map_frame, {}};
+  for (const core::RecordedLine& line : parameters_.lines) {
+    // Each line was recorded on a drive of its own.
+    const std::uint64_t seed = parameters_.simulation.seed + 1000000 * (recorded.lines.size() + 1);
+    recorded.lines.push_back(core::record_line(line, parameters_.simulation.errors.recording, seed));
+  }
+  NavigationInfo message = to_message(recorded);
   message.header.stamp = stamp();
   navigation_publisher_.publish(message);
 }
@@ -156,9 +163,10 @@ void VehicleSimulator::publish_localization() {
   message.child_frame_id = parameters_.base_frame;
   message.pose = to_pose(localization);
   const core::NoiseParam& noise = parameters_.simulation.noise;
+  const core::LocalizationErrorParam& errors = parameters_.simulation.errors.localization;
   message.uncertainty.position_std_dev.x = message.uncertainty.position_std_dev.y =
-      noise.localization_position;
-  message.uncertainty.orientation_std_dev.z = noise.localization_heading;
+      std::hypot(noise.localization_position, errors.bias);
+  message.uncertainty.orientation_std_dev.z = std::hypot(noise.localization_heading, errors.heading_bias);
   message.status.code = LocalizationStatus::OK;
   localization_publisher_.publish(message);
   broadcast(localization);
@@ -187,14 +195,30 @@ void VehicleSimulator::publish_chassis() {
   chassis_publisher_.publish(message);
 }
 
-void VehicleSimulator::publish_lane_markers() {
+void VehicleSimulator::take_image() {
   const core::LaneMarkers markers = vehicle_.measure_lane_markers();
   LaneMarkers message;
   message.header.stamp = stamp();
   message.header.frame_id = parameters_.base_frame;
   message.left_lane_marker = to_message(markers.left);
   message.right_lane_marker = to_message(markers.right);
-  lane_markers_publisher_.publish(message);
+  for (const core::LaneMarker& marker : markers.next_left) {
+    message.next_left_lane_marker.push_back(to_message(marker));
+  }
+  for (const core::LaneMarker& marker : markers.next_right) {
+    message.next_right_lane_marker.push_back(to_message(marker));
+  }
+  core::Time due = vehicle_.time() + vehicle_.marker_latency();
+  if (!late_markers_.empty()) due = std::max(due, late_markers_.back().due);  // none overtakes another
+  late_markers_.push_back({due, message});
+}
+
+/// Those that are due by `until`, each at its time.
+void VehicleSimulator::publish_lane_markers(core::Time until) {
+  for (; !late_markers_.empty() && late_markers_.front().due <= until; late_markers_.pop_front()) {
+    wait_until(late_markers_.front().due);
+    lane_markers_publisher_.publish(late_markers_.front().message);
+  }
 }
 
 }  // namespace relative_map

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <relative_map/LaneMarkers.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
 #include <array>
+#include <deque>
 #include <optional>
 
 #include "relative_map/simulation/vehicle_simulation.hpp"
@@ -29,11 +31,16 @@ class VehicleSimulator {
     void (VehicleSimulator::*publish)();
     core::Time due{};  ///< since the start
   };
+  struct LateMarkers {
+    core::Time due;  ///< since the start
+    LaneMarkers message;
+  };
 
   void publish_navigation();
   void publish_localization();
   void publish_chassis();
-  void publish_lane_markers();
+  void take_image();
+  void publish_lane_markers(core::Time until);
   void broadcast(const core::Localization& localization);
   Sensor& next_sensor();
   void wait_until(core::Time due);
@@ -43,6 +50,7 @@ class VehicleSimulator {
   SimulatorParameters parameters_;
   core::VehicleSimulation vehicle_;
   std::array<Sensor, 3> sensors_;
+  std::deque<LateMarkers> late_markers_;  ///< by rising time: of images that are still looked at
   core::Time start_{};                    ///< when the vehicle's time was 0
   std::optional<core::Time> stopped_at_;  ///< when it came to the end of the line
   ros::Publisher navigation_publisher_, localization_publisher_, chassis_publisher_, lane_markers_publisher_;

@@ -52,6 +52,8 @@ const char* group_name(SceneGroup group) {
       return "= with a line";
     case SceneGroup::kDrifting:
       return "= drifting";
+    case SceneGroup::kBadMarkers:
+      return "= bad markers";
     case SceneGroup::kMarkersAlone:
       return "= markers alone";
     default:
@@ -92,13 +94,15 @@ std::vector<MeasuredMap> map_drive(const RecordedDrive& drive, const PipelineCon
   MapContext context{config.base_frame, std::nullopt};
   auto delivery = drive.deliveries.begin();
   for (Time now = drive.start; now <= drive.end; now += kTickPeriod) {
+    const auto started = std::chrono::steady_clock::now();
     for (; delivery != drive.deliveries.end() && delivery->time <= now; ++delivery) {
       deliver(*delivery, deliver_markers, pipeline);
     }
     const RelativeMap map = pipeline.tick(now);
+    const double cost = seconds_since(started);
     const std::vector<Violation> violations = check_map(map, context);
     context.previous_sequence_num = map.sequence_num;
-    MeasuredMap measured{to_seconds(now - drive.start), meter.measure(map), violations.size(), ""};
+    MeasuredMap measured{to_seconds(now - drive.start), meter.measure(map), violations.size(), "", cost};
     if (!violations.empty()) measured.violation = violations.front().row + ": " + violations.front().what;
     if (now - drive.start < kSettleTime) measured.errors = MapErrors();
     maps.push_back(measured);
@@ -112,11 +116,11 @@ double ErrorStatistics::rms() const {
   return std::sqrt(sum / static_cast<double>(errors_.size()));  // NaN: 0 / 0
 }
 
-double ErrorStatistics::percentile_95() const {
+double ErrorStatistics::percentile(double share) const {
   if (errors_.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::vector<double> sizes;
   for (const double error : errors_) sizes.push_back(std::abs(error));
-  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(sizes.size() - 1));
+  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), nth, sizes.end());
   return *nth;
 }
@@ -131,6 +135,7 @@ void AccuracyRow::add(const MeasuredMap& map) {
   heading.add(errors.heading);
   jitter_10.add(errors.jitter_10);
   jitter_30.add(errors.jitter_30);
+  cost.add(map.cost);
   if (errors.usable) {
     ++usable_of;
     if (*errors.usable) ++usable;
@@ -146,6 +151,7 @@ void AccuracyRow::add(const AccuracyRow& other) {
   heading.add(other.heading);
   jitter_10.add(other.jitter_10);
   jitter_30.add(other.jitter_30);
+  cost.add(other.cost);
   usable += other.usable;
   usable_of += other.usable_of;
   violations += other.violations;
@@ -168,39 +174,54 @@ void add_to_totals(const AccuracyRow& row, std::vector<AccuracyRow>& totals) {
   total->add(row);
 }
 
+/// Makes the scene of one seed.
+using SceneMaker = std::function<AccuracyScene(std::uint64_t seed)>;
+
+std::vector<SceneMaker> scene_makers(const BenchmarkOptions& options) {
+  std::vector<SceneMaker> makers;
+  for (const RecordedLine& line : options.lines) {
+    makers.emplace_back([&](std::uint64_t seed) { return make_line_scene(line, seed, options.level); });
+  }
+  if (options.scenes.empty() && !options.lines.empty()) return makers;
+  for (const std::string& name : selected(
+           accuracy_scene_names(), options.scenes, [](const std::string& n) { return n; }, "scene")) {
+    makers.emplace_back(
+        [&options, name](std::uint64_t seed) { return make_accuracy_scene(name, seed, options.level); });
+  }
+  return makers;
+}
+
 }  // namespace
 
 BenchmarkResult run_benchmark(const BenchmarkOptions& options, const DriveObserver& observer) {
-  const auto scenes = selected(
-      accuracy_scene_names(), options.scenes, [](const std::string& name) { return name; }, "scene");
   const auto methods = selected(
       accuracy_methods(), options.methods, [](const AccuracyMethod& method) { return method.name; },
       "method");
 
   BenchmarkResult result;
-  for (const std::string& name : scenes) {
+  for (const SceneMaker& make : scene_makers(options)) {
     std::vector<AccuracyRow> rows(methods.size());
     for (std::uint64_t seed = 1; seed <= options.seeds; ++seed) {
       auto started = std::chrono::steady_clock::now();
-      const AccuracyScene scene = make_accuracy_scene(name, seed, options.scale);
+      const AccuracyScene scene = make(seed);
       const RecordedDrive drive = record_drive(scene);
       result.driven += scene.duration;
       result.simulation_time += seconds_since(started);
       for (std::size_t i = 0; i < methods.size(); ++i) {
-        rows[i].scene = name;
-        rows[i].method = methods[i].name;
-        rows[i].group = scene.group;
         if (scene.lines.empty() && !methods[i].deliver_markers) continue;
         started = std::chrono::steady_clock::now();
         const auto maps = map_drive(drive, methods[i].config(scene.lane_source), methods[i].deliver_markers);
         result.mapping_time += seconds_since(started);
         result.mapped += scene.duration;
+        rows[i].scene = scene.name;
+        rows[i].method = methods[i].name;
+        rows[i].group = scene.group;
         for (const MeasuredMap& map : maps) rows[i].add(map);
         if (observer) observer(scene, seed, methods[i], maps);
       }
     }
     for (AccuracyRow& row : rows) {
-      if (row.center.front().empty()) continue;
+      if (row.cost.empty()) continue;
       add_to_totals(row, result.totals);
       result.rows.push_back(std::move(row));
     }

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "relative_map/pipeline/lane_path.hpp"
-
 namespace relative_map::core {
 
 namespace {
 
 constexpr double kPastEnd = 3.0;         // [m] beyond a line's end that it is taken to go straight on
+constexpr double kReach = 90.0;          // [m] of a lane that is looked at
 constexpr double kUsableError = 1.5;     // [m]
 constexpr double kUsableLength = 30.0;   // [m]
 constexpr std::size_t kAt10 = 2;         // of kErrorDistances
@@ -53,6 +51,17 @@ const Lane* current_lane(const RelativeMap& map) {
   return found == map.lanes.end() ? nullptr : &*found;
 }
 
+/// As much of a centerline as is compared.
+Polyline near_part(const Lane& lane) {
+  const double end = lane.path.front().position.norm() + kReach;
+  Polyline points;
+  for (const PathPoint& point : lane.path) {
+    points.push_back(point.position);
+    if (point.s > end) break;
+  }
+  return points;
+}
+
 double width_at(const std::vector<WidthSample>& samples, double s) {
   const auto after =
       std::find_if(samples.begin(), samples.end(), [s](const WidthSample& sample) { return sample.s >= s; });
@@ -78,7 +87,7 @@ MapErrors AccuracyMeter::measure_lane(const Lane* lane, std::size_t true_lane, c
   const std::vector<RoadPlace> places =
       road.ahead(target, truth.s, {kErrorDistances.begin(), kErrorDistances.end()});
   const Pose2& base = truth.path_from_base;
-  const Polyline center = lane == nullptr ? Polyline() : positions_of(lane->path);
+  const Polyline center = lane == nullptr ? Polyline() : near_part(*lane);
   MapErrors errors;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto offset =
@@ -130,7 +139,7 @@ void AccuracyMeter::measure_jitter(const Published& now, const TruePose& truth, 
   if (!last_ || last_->true_lane != now.true_lane) return;
   const std::vector<RoadPlace> places =
       drive_.road.ahead(drive_.road.lanes[now.true_lane], truth.s, {10.0, 30.0});
-  const Polyline center = positions_of(now.lane.path), center_before = positions_of(last_->lane.path);
+  const Polyline center = near_part(now.lane), center_before = near_part(last_->lane);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto offset_in = [&](const Polyline& polyline, const Pose2& base) {
       return lateral_offset(polyline, base.to_local(places[i].position),

@@ -21,7 +21,7 @@ constexpr double kRecordedSpacing = 0.4;   // [m]
 struct Builder {
   AccuracyScene scene;
   std::uint64_t seed;
-  double scale;
+  ErrorLevel level;
 
   /// `count` lanes side by side; `recorded` of them have a line.
   void lay(const RoadShape& road, std::size_t count, double half_width, bool recorded = true) {
@@ -80,8 +80,14 @@ void lane_change(Builder& b) {
 }
 
 void end_of_line(Builder& b) {
-  b.lay(country_road(b.seed, 500.0), 1, 1.75);
+  const RoadShape road = country_road(b.seed, 600.0);
+  b.lay(road, 1, 1.75);
   b.drive(15.0, 80.0);
+  // The road goes on, with its paint.
+  std::vector<LinePoint>& points = b.scene.lines.front().points;
+  const double left = 100.0 / road.length();  // share of the points, which are evenly spaced
+  points.resize(static_cast<std::size_t>((1.0 - left) * static_cast<double>(points.size())));
+  b.scene.end_s = b.scene.vehicle.stop_s = road.length() - 100.5;
 }
 
 void stop_and_reverse(Builder& b) {
@@ -113,20 +119,27 @@ void wide(Builder& b) {
   b.drive(18.0, 80.0);
 }
 
-void drift(Builder& b, std::size_t lanes, double size) {
+void drift(Builder& b, const RoadShape& road, std::size_t lanes, double speed) {
   b.scene.group = SceneGroup::kDrifting;
-  b.scene.vehicle.errors.localization.drift = b.scale * size;
-  b.scene.vehicle.errors.localization.drift_time = 100.0;
-  b.lay(country_road(b.seed, 1700.0), lanes, 1.75);
-  b.drive(15.0, 105.0);
+  b.scene.vehicle.errors.localization.drift = b.level.scale * 12.0;
+  b.lay(road, lanes, 1.75);
+  b.drive(speed, 105.0);
 }
 
 void drift_1(Builder& b) {
-  drift(b, 1, 12.0);
+  drift(b, country_road(b.seed, 1700.0), 1, 15.0);
 }
 
 void drift_3(Builder& b) {
-  drift(b, 3, 12.0);
+  drift(b, country_road(b.seed, 1700.0), 3, 15.0);
+}
+
+void drift_straights(Builder& b) {
+  drift(b, long_straights_road(b.seed, 1700.0), 1, 15.0);
+}
+
+void drift_motorway(Builder& b) {
+  drift(b, motorway_road(b.seed, 3200.0), 3, 28.0);
 }
 
 void perception(Builder& b, const RoadShape& road, std::size_t lanes, double speed) {
@@ -142,6 +155,29 @@ void perception_motorway(Builder& b) {
 
 void perception_country(Builder& b) {
   perception(b, country_road(b.seed, 1600.0), 1, 18.0);
+}
+
+void bad_markers(Builder& b, MarkerFault fault) {
+  b.scene.group = SceneGroup::kBadMarkers;
+  b.scene.marker_fault = fault;
+  b.lay(country_road(b.seed, 1200.0), 1, 1.75);
+  b.drive(18.0, 60.0);
+}
+
+void lane_off(Builder& b) {
+  bad_markers(b, MarkerFault::kLaneOff);
+}
+
+void mirrored(Builder& b) {
+  bad_markers(b, MarkerFault::kMirrored);
+}
+
+void frozen(Builder& b) {
+  bad_markers(b, MarkerFault::kFrozen);
+}
+
+void future(Builder& b) {
+  bad_markers(b, MarkerFault::kFuture);
 }
 
 void perfect(Builder& b) {
@@ -168,8 +204,14 @@ const std::vector<std::pair<std::string, std::function<void(Builder&)>>>& scenes
       {"wide-lane", wide},
       {"drift-one-line", drift_1},
       {"drift-three-lines", drift_3},
+      {"drift-long-straights", drift_straights},
+      {"drift-motorway", drift_motorway},
       {"perception-motorway", perception_motorway},
       {"perception-country", perception_country},
+      {"bad-lane-off", lane_off},
+      {"bad-mirrored", mirrored},
+      {"bad-frozen", frozen},
+      {"bad-future", future},
       {"perfect", perfect}};
   return all;
 }
@@ -182,7 +224,8 @@ std::vector<std::string> accuracy_scene_names() {
   return names;
 }
 
-void set_usual_errors(VehicleSimulationConfig& config, double scale) {
+void set_usual_errors(VehicleSimulationConfig& config, const ErrorLevel& level) {
+  const double scale = level.scale;
   config.noise.localization_position = 0.025 * scale;
   config.noise.localization_heading = 0.0035 * scale;  // 0.2 degrees
   config.noise.yaw_rate = 0.003 * scale;
@@ -208,20 +251,42 @@ void set_usual_errors(VehicleSimulationConfig& config, double scale) {
   errors.markers.max_latency = 0.15;
   config.paint.max_turn = 0.6;
   config.paint.max_residual = 0.03;
+  if (!level.harsh) return;
+  errors.markers.correlated_share = 0.8;
+  errors.markers.correlation_time = 3.0;
+  errors.markers.common_share = 0.5;
+  errors.markers.dropout.interval = 6.0;
+  errors.markers.outlier.interval = 5.0;
 }
 
-AccuracyScene make_accuracy_scene(const std::string& name, std::uint64_t seed, double scale) {
+AccuracyScene make_accuracy_scene(const std::string& name, std::uint64_t seed, const ErrorLevel& level) {
   for (std::size_t i = 0; i < scenes().size(); ++i) {
     const auto& [scene_name, make] = scenes()[i];
     if (scene_name != name) continue;
-    Builder builder{{}, 1000 * seed + i, scale};  // no scene has another's errors
+    Builder builder{{}, 1000 * seed + i, level};  // no scene has another's errors
     builder.scene.name = name;
     builder.scene.vehicle.seed = builder.seed;
-    set_usual_errors(builder.scene.vehicle, scale);
+    set_usual_errors(builder.scene.vehicle, level);
     make(builder);
     return std::move(builder.scene);
   }
   throw std::invalid_argument("there is no scene '" + name + "'");
+}
+
+AccuracyScene make_line_scene(const RecordedLine& line, std::uint64_t seed, const ErrorLevel& level) {
+  const double half_width = 1.75;
+  AccuracyScene scene;
+  scene.name = line.name;
+  scene.reference = line;
+  scene.lanes.push_back({0.0, half_width, 0, 1});
+  scene.vehicle.seed = seed;
+  scene.vehicle.paint.lines = {{half_width, BoundaryType::kSolidWhite},
+                               {-half_width, BoundaryType::kSolidWhite}};
+  set_usual_errors(scene.vehicle, level);
+  scene.lines.push_back(record_line(line, scene.vehicle.errors.recording, seed + 1000000));
+  scene.lines.front().priority = 0;
+  scene.vehicle.speed.max_speed = 15.0;
+  return scene;
 }
 
 }  // namespace relative_map::core

@@ -37,6 +37,7 @@ std::vector<std::string> ErrorParam::validate() const {
   check_range("errors/recording_wander_length", recording.wander_length, 5.0, 1e6, faults);
   check_range("errors/marker_correlated_share", markers.correlated_share, 0.0, 1.0, faults);
   check_range("errors/marker_correlation_time", markers.correlation_time, 0.01, 1e6, faults);
+  check_range("errors/marker_common_share", markers.common_share, 0.0, 1.0, faults);
   check_range("errors/view_range_change", markers.view_range_change, 0.0, 300.0, faults);
   check_range("errors/view_range_time", markers.view_range_time, 0.01, 1e6, faults);
   check_range("errors/min_view_range", markers.min_view_range, 0.0, 300.0, faults);

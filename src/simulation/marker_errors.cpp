@@ -7,8 +7,13 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr std::size_t kRoles = 4;
-constexpr double kNeighborNoise = 2.0;  // of paint a lane farther away
+constexpr std::size_t kLeft = 0, kRight = 1, kNextLeft = 2, kNextRight = 3, kImage = 4, kRoles = 5;
+constexpr double kNeighborNoise = 2.0;  // of paint a lane farther away, times as large
+
+double size_of(std::size_t role, double common_share) {
+  if (role == kImage) return std::sqrt(common_share);
+  return (role == kNextLeft || role == kNextRight ? kNeighborNoise : 1.0) * std::sqrt(1.0 - common_share);
+}
 
 }  // namespace
 
@@ -21,7 +26,7 @@ MarkerErrors::MarkerErrors(const MarkerErrorParam& param, const CubicNoise& nois
   std::uint32_t stream = 40;
   for (std::size_t role = 0; role < kRoles; ++role) {
     for (const double coefficient : {noise.c0, noise.c1, noise.c2, noise.c3}) {
-      const double size = (role < 2 ? 1.0 : kNeighborNoise) * coefficient;
+      const double size = size_of(role, param.common_share) * coefficient;
       const double lasting = size * std::sqrt(param.correlated_share);
       noises_.push_back({NoiseSource(seed, stream),
                          OrnsteinUhlenbeck(lasting, param.correlation_time, NoiseSource(seed, stream + 1)),
@@ -37,25 +42,29 @@ double MarkerErrors::view_range(double view_range, double time) {
   return std::clamp(changed, param_.min_view_range, param_.max_view_range);
 }
 
-void MarkerErrors::add_noise(LaneMarker& marker, std::size_t role, double time) {
+Cubic MarkerErrors::draw_noise(std::size_t role, double time) {
   std::array<double, 4> errors{};
   for (std::size_t i = 0; i < errors.size(); ++i) {
     Noise& noise = noises_[4 * role + i];
     errors[i] = noise.white.draw(noise.white_size) + noise.lasting.at(time);
   }
-  marker.cubic.c0 += errors[0];
-  marker.cubic.c1 += errors[1];
-  marker.cubic.c2 += errors[2];
-  marker.cubic.c3 += errors[3];
+  return {errors[0], errors[1], errors[2], errors[3]};
 }
 
 void MarkerErrors::spoil(LaneMarkers& markers, double time) {
-  // Noise is drawn for what is not seen, too: what is seen then does not depend on it.
-  LaneMarker unseen;
-  add_noise(markers.left, 0, time);
-  add_noise(markers.right, 1, time);
-  add_noise(markers.next_left.empty() ? unseen : markers.next_left.front(), 2, time);
-  add_noise(markers.next_right.empty() ? unseen : markers.next_right.front(), 3, time);
+  const Cubic common = draw_noise(kImage, time);
+  LaneMarker unseen;  // noise is drawn for it, too: what is seen later does not depend on it
+  const auto add_noise = [&](LaneMarker& marker, std::size_t role) {
+    const Cubic own = draw_noise(role, time);
+    marker.cubic.c0 += common.c0 + own.c0;
+    marker.cubic.c1 += common.c1 + own.c1;
+    marker.cubic.c2 += common.c2 + own.c2;
+    marker.cubic.c3 += common.c3 + own.c3;
+  };
+  add_noise(markers.left, kLeft);
+  add_noise(markers.right, kRight);
+  add_noise(markers.next_left.empty() ? unseen : markers.next_left.front(), kNextLeft);
+  add_noise(markers.next_right.empty() ? unseen : markers.next_right.front(), kNextRight);
   if (const Episode* outlier = outliers_.at(time)) {
     const double jump = std::copysign(
         param_.min_jump + std::abs(outlier->size) * (param_.max_jump - param_.min_jump), outlier->size);

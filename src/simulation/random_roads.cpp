@@ -75,4 +75,13 @@ RoadShape urban_road(std::uint64_t seed, double length) {
   return surveyor.road();
 }
 
+RoadShape long_straights_road(std::uint64_t seed, double length) {
+  Surveyor surveyor(seed, 64);
+  while (surveyor.road().length() < length) {
+    surveyor.straight(surveyor.uniform(150.0, 350.0));
+    surveyor.curve(surveyor.uniform(25.0, 60.0), surveyor.uniform(0.6, 1.4), 15.0);
+  }
+  return surveyor.road();
+}
+
 }  // namespace relative_map::core

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "relative_map/simulation/random_process.hpp"
 
@@ -24,14 +26,45 @@ Beat random_beat(std::mt19937_64& engine, double low_rate, double high_rate) {
   return {from_seconds(period), from_seconds(period * phase(engine))};
 }
 
+TruePose true_pose(const VehicleSimulation& vehicle, Time now) {
+  const Pose2 pose = vehicle.map_from_base();
+  return {now, Pose2(pose.position() - vehicle.path().origin, pose.heading()), vehicle.s(), vehicle.l()};
+}
+
+/// Spoils all the markers of a drive in one way.
+class Spoiler {
+ public:
+  explicit Spoiler(const AccuracyScene& scene)
+      : fault_(scene.marker_fault), lane_width_(2.0 * scene.lanes.front().half_width) {}
+
+  void spoil(LaneMarkers& markers) {
+    if (fault_ == MarkerFault::kLaneOff) {
+      for (LaneMarker* marker : {&markers.left, &markers.right}) marker->cubic.c0 += lane_width_;
+    } else if (fault_ == MarkerFault::kMirrored) {
+      std::swap(markers.left, markers.right);
+    } else if (fault_ == MarkerFault::kFrozen) {
+      if (!first_) first_ = markers;
+      const Time stamp = markers.stamp;
+      markers = *first_;
+      markers.stamp = stamp;
+    } else if (fault_ == MarkerFault::kFuture) {
+      markers.stamp += std::chrono::seconds(1);
+    }
+  }
+
+ private:
+  MarkerFault fault_;
+  double lane_width_;  ///< [m]
+  std::optional<LaneMarkers> first_;
+};
+
 }  // namespace
 
 TruePose RecordedDrive::truth_at(Time stamp) const {
-  const double index = to_seconds(stamp - start) / to_seconds(kTruthPeriod);
-  const double last = static_cast<double>(truth.size() - 1);
-  const auto i = static_cast<std::size_t>(std::clamp(std::floor(index), 0.0, last - 1.0));
-  const TruePose &a = truth[i], &b = truth[i + 1];
-  const double weight = std::clamp(index - static_cast<double>(i), 0.0, 1.0);
+  const auto after = std::upper_bound(truth.begin() + 1, truth.end() - 1, stamp,
+                                      [](Time time, const TruePose& pose) { return time < pose.stamp; });
+  const TruePose &a = *(after - 1), &b = *after;
+  const double weight = std::clamp(to_seconds(stamp - a.stamp) / to_seconds(b.stamp - a.stamp), 0.0, 1.0);
   double ds = b.s - a.s;
   if (road.path.ends == Ends::kClosed) ds = std::remainder(ds, road.path.length());
   const Pose2 &from = a.path_from_base, &to = b.path_from_base;
@@ -44,7 +77,7 @@ TruePose RecordedDrive::truth_at(Time stamp) const {
 RecordedDrive record_drive(const AccuracyScene& scene) {
   VehicleSimulation vehicle(scene.reference, scene.vehicle);
   RecordedDrive drive;
-  drive.road = {vehicle.path(), scene.lanes, scene.vehicle.paint.lines};
+  drive.road = {vehicle.path(), scene.lanes, scene.vehicle.paint.lines, scene.end_s};
   drive.navigation = {"map", scene.lines};
   drive.start = kStart;
   drive.end = kStart + from_seconds(scene.duration);
@@ -54,6 +87,7 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
   Beat localization = random_beat(engine, 50.0, 100.0), chassis = random_beat(engine, 50.0, 100.0),
        markers = random_beat(engine, 10.0, 15.0);
   const Time duration = from_seconds(scene.duration);
+  Spoiler spoiler(scene);
   Time last_marker_message = kStart;
   for (;;) {
     Beat* next = std::min({&truth, &localization, &chassis, &markers},
@@ -62,11 +96,8 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
     vehicle.step(to_seconds(next->due - vehicle.time()));
     const Time now = kStart + vehicle.time();
     next->due += next->period;
-    if (next == &truth) {
-      const Pose2 pose = vehicle.map_from_base();
-      drive.truth.push_back(
-          {now, Pose2(pose.position() - drive.road.path.origin, pose.heading()), vehicle.s(), vehicle.l()});
-    } else if (next == &localization) {
+    if (drive.truth.empty() || drive.truth.back().stamp < now) drive.truth.push_back(true_pose(vehicle, now));
+    if (next == &localization) {
       Localization message = vehicle.measure_localization();
       message.stamp = now;
       drive.deliveries.push_back({now, message});
@@ -74,9 +105,10 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
       Chassis message = vehicle.measure_chassis();
       message.stamp = now;
       drive.deliveries.push_back({now, message});
-    } else {
+    } else if (next == &markers) {
       LaneMarkers message = vehicle.measure_lane_markers();
       message.stamp = now;
+      spoiler.spoil(message);
       // One camera's messages do not overtake each other.
       last_marker_message = std::max(last_marker_message, now + vehicle.marker_latency());
       drive.deliveries.push_back({last_marker_message, message});

@@ -5,13 +5,16 @@
 
 namespace relative_map::core {
 
-SpeedProfile::SpeedProfile(const DrivePath& path, const SpeedParam& param) {
+SpeedProfile::SpeedProfile(const DrivePath& path, const SpeedParam& param, double stop_s) {
   for (const PathPoint& point : path.points) {
     const double by_curve = param.max_lateral_acceleration / std::max(std::abs(point.kappa), 1e-9);
     limits_.push_back({point.s, std::min(param.max_speed * param.max_speed, by_curve)});
   }
   const bool closed = path.ends == Ends::kClosed;
   if (!closed) limits_.back().squared_speed = 0.0;
+  for (Limit& limit : limits_) {
+    if (!closed && stop_s > 0.0 && limit.s >= stop_s) limit.squared_speed = 0.0;
+  }
   for (int lap = 0; lap < (closed ? 2 : 1); ++lap) {  // braking may begin in the lap before
     if (closed) limits_.back().squared_speed = limits_.front().squared_speed;
     for (std::size_t i = limits_.size() - 1; i > 0; --i) {

@@ -12,7 +12,11 @@ constexpr double kEitherLane = 0.6;  // [m] from the line between two lanes: bot
 
 class Walk {
  public:
-  Walk(const DrivePath& path, double l) : path_(path), l_(l) {}
+  Walk(const DrivePath& path, double l, double s) : path_(path), l_(l) {
+    // A guess for evenly spaced vertices.
+    const double share = path.hold(s) / path.length();
+    vertex_ = static_cast<std::size_t>(share * static_cast<double>(path.points.size() - 1));
+  }
   RoadPlace at(double s) {
     const PathPoint point = interpolate(path_.points, path_.hold(s), vertex_);
     return {s, point.position + l_ * left_of(point.direction), point.direction};
@@ -21,25 +25,26 @@ class Walk {
  private:
   const DrivePath& path_;
   double l_;
-  std::size_t vertex_ = 0;
+  std::size_t vertex_;
 };
 
 }  // namespace
 
 RoadPlace TrueRoad::at(double s, double l) const {
-  return Walk(path, l).at(s);
+  return Walk(path, l, s).at(s);
 }
 
 std::vector<RoadPlace> TrueRoad::ahead(const TrueLane& lane, double s,
                                        const std::vector<double>& distances) const {
   std::vector<RoadPlace> places;
-  Walk walk(path, lane.l);
+  Walk walk(path, lane.l, s);
   RoadPlace here = walk.at(s);
   double walked = 0.0;
+  const double end = path.ends == Ends::kOpen ? std::min(end_s, path.length()) : end_s;
   for (const double distance : distances) {
     for (RoadPlace next = walk.at(here.s + kStep);; next = walk.at(here.s + kStep)) {
       const double length = (next.position - here.position).norm();
-      if (path.ends == Ends::kOpen && next.s > path.length()) return places;
+      if (next.s > end) return places;
       if (walked + length > distance) {
         places.push_back(walk.at(here.s + kStep * (distance - walked) / length));
         break;

@@ -25,6 +25,7 @@ VehicleSimulationConfig checked(const VehicleSimulationConfig& config) {
 std::vector<std::string> VehicleSimulationConfig::validate() const {
   std::vector<std::string> faults;
   check_range("start_s", start_s, 0.0, 1e7, faults);
+  check_range("stop_s", stop_s, 0.0, 1e7, faults);
   check_range("wander", wander, 0.0, 5.0, faults);
   check_range("wander_wavelength", wander_wavelength, 20.0, 1e4, faults);
   check_range("max_speed", speed.max_speed, 0.1, 100.0, faults);
@@ -43,8 +44,16 @@ std::vector<std::string> VehicleSimulationConfig::validate() const {
   check_range("noise/marker_c3", noise.marker_c3, 0.0, 0.01, faults);
   check_range("noise/yaw_rate", noise.yaw_rate, 0.0, 1.0, faults);
   check_range("offset", offset, -50.0, 50.0, faults);
-  for (const LaneChange& change : lane_changes)
+  for (const LaneChange& change : lane_changes) {
     check_range("lane change length", change.length, 1.0, 1e4, faults);
+  }
+  for (const SpeedChange& change : speed_changes) {
+    check_range("speed change", change.speed, -10.0, 100.0, faults);
+  }
+  if (!std::is_sorted(paint.lines.begin(), paint.lines.end(),
+                      [](const PaintLine& a, const PaintLine& b) { return a.l > b.l; })) {
+    faults.push_back("the lines of paint do not lie from left to right");
+  }
   check_range("max_turn", paint.max_turn, 0.01, 1.2, faults);
   check_range("max_residual", paint.max_residual, 1e-3, 1.0, faults);
   for (std::string& fault : errors.validate()) faults.push_back(std::move(fault));
@@ -54,7 +63,7 @@ std::vector<std::string> VehicleSimulationConfig::validate() const {
 VehicleSimulation::VehicleSimulation(const RecordedLine& line, const VehicleSimulationConfig& config)
     : config_(checked(config)),
       path_(make_drive_path(line)),
-      speed_profile_(path_, config.speed),
+      speed_profile_(path_, config.speed, config.stop_s),
       wander_(config.wander, config.wander_wavelength, config.seed),
       localization_noise_(config.seed, 0),
       chassis_noise_(config.seed, 1),
@@ -123,8 +132,11 @@ void VehicleSimulation::advance(double dt) {
 
 void VehicleSimulation::step(double dt) {
   const int steps = static_cast<int>(std::ceil(dt / kMaxStep));
-  for (int i = 0; i < steps; ++i) advance(dt / steps);
-  time_ += Time(std::llround(dt * 1e9));
+  const Time start = time_;
+  for (int i = 1; i <= steps; ++i) {
+    advance(dt / steps);
+    time_ = start + from_seconds(dt * i / steps);
+  }
 }
 
 Localization VehicleSimulation::measure_localization() {

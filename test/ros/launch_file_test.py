@@ -105,7 +105,13 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual(config.params['/vehicle_simulator/max_speed'].value, 7)
         self.assertEqual(config.params['/vehicle_simulator/navigation_lines'].value, 'a.smoothed b.smoothed')
         self.assertEqual(node(config, 'relative_map').type, 'relative_map_node')
+        self.assertNotIn('/vehicle_simulator/errors/drift', config.params)
         self.assertIn('<robot name="sample_car">', config.params['/robot_description'].value)
+
+    def test_the_demo_drives_with_errors_if_asked(self):
+        config = load('demo.launch', 'errors:=true', *NEEDED_ARGUMENTS['demo.launch'])
+        self.assertEqual(config.params['/vehicle_simulator/errors/localization_bias'].value, 0.3)
+        self.assertEqual(config.params['/vehicle_simulator/noise/yaw_rate'].value, 0.003)
 
 
 if __name__ == '__main__':

@@ -28,6 +28,7 @@ struct MeasuredMap {
   MapErrors errors;
   std::size_t violations = 0;  ///< of the output contract
   std::string violation;       ///< the first one
+  double cost = 0.0;           ///< [s] that its inputs and its tick took
 };
 
 /// Plays the drive into the pipeline that the node runs, and ticks it ten times a second. The first second,
@@ -47,11 +48,14 @@ class ErrorStatistics {
   }
   bool empty() const { return errors_.empty(); }
   std::size_t count() const { return errors_.size(); }
-  /// NaN if empty.
+  // NaN if empty.
   double rms() const;
-  double percentile_95() const;
+  double median() const { return percentile(0.5); }
+  double percentile_95() const { return percentile(0.95); }
 
  private:
+  double percentile(double share) const;
+
   std::vector<double> errors_;
 };
 
@@ -62,6 +66,7 @@ struct AccuracyRow {
   std::array<ErrorStatistics, kErrorDistances.size()> center;  ///< [m]
   ErrorStatistics boundary, half_width, jitter_10, jitter_30;  ///< [m]
   ErrorStatistics heading;                                     ///< [rad]
+  ErrorStatistics cost;                                        ///< [s] a map
   std::size_t usable = 0, usable_of = 0;                       ///< maps
   std::size_t violations = 0;
   std::string violation;  ///< the first one
@@ -72,8 +77,9 @@ struct AccuracyRow {
 
 struct BenchmarkOptions {
   std::uint64_t seeds = 3;
-  double scale = 1.0;
-  std::vector<std::string> scenes;   ///< none: all
+  ErrorLevel level;
+  std::vector<std::string> scenes;   ///< none: all, if there are no `lines`
+  std::vector<RecordedLine> lines;   ///< to be driven on, too
   std::vector<std::string> methods;  ///< none: all
 };
 

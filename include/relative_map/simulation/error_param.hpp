@@ -35,8 +35,9 @@ struct EpisodeParam {
 };
 
 struct MarkerErrorParam {
-  double correlated_share = 0.0;   ///< [0, 1] of the noise's variance that lasts from image to image ...
-  double correlation_time = 1.0;   ///< ... for so long [s]
+  double correlated_share = 0.0;  ///< [0, 1] of the noise's variance that lasts from image to image ...
+  double correlation_time = 1.0;  ///< ... for so long [s]
+  double common_share = 0.0;      ///< [0, 1] of the noise's variance that all paint of an image has in common
   double view_range_change = 0.0;  ///< [m] standard deviation of the view range about PaintParam::view_range
   double view_range_time = 10.0;   ///< [s] over which it changes
   double min_view_range = 25.0, max_view_range = 70.0;  ///< [m] limits of the changing view range

@@ -37,10 +37,10 @@ class MarkerErrors {
     OrnsteinUhlenbeck lasting;
     double white_size;
   };
-  void add_noise(LaneMarker& marker, std::size_t role, double time);
+  Cubic draw_noise(std::size_t role, double time);
 
   MarkerErrorParam param_;
-  std::vector<Noise> noises_;  ///< four of each role: left, right, next left, next right
+  std::vector<Noise> noises_;  ///< four of each role: left, right, next left, next right, and the image
   OrnsteinUhlenbeck view_range_change_;
   Episodes dropouts_, outliers_;
   std::mt19937_64 latency_;

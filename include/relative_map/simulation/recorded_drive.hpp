@@ -28,7 +28,7 @@ struct RecordedDrive {
   TrueRoad road;
   NavigationInfo navigation;
   std::vector<Delivery> deliveries;  ///< by rising time
-  std::vector<TruePose> truth;       ///< every hundredth of a second
+  std::vector<TruePose> truth;       ///< by rising stamp: each hundredth of a second, and each message
   Time start{}, end{};
 
   /// The truth at a time, interpolated.

@@ -18,7 +18,8 @@ struct SpeedParam {
 /// ahead.
 class SpeedProfile {
  public:
-  SpeedProfile(const DrivePath& path, const SpeedParam& param);
+  /// An open path may be driven on up to `stop_s` [m], or if that is 0 up to its end.
+  SpeedProfile(const DrivePath& path, const SpeedParam& param, double stop_s = 0.0);
 
   /// [m/s] at s [m], which lies at or after the path's vertex `vertex`.
   double limit(double s, std::size_t vertex) const;

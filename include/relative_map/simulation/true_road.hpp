@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <limits>
 #include <vector>
 
 #include "relative_map/simulation/drive_path.hpp"
@@ -26,12 +26,13 @@ struct RoadPlace {
 /// What maps are measured against: a reference curve, and lanes and paint that run beside it.
 struct TrueRoad {
   DrivePath path;
-  std::vector<TrueLane> lanes;   ///< left to right
-  std::vector<PaintLine> paint;  ///< left to right
+  std::vector<TrueLane> lanes;                             ///< left to right
+  std::vector<PaintLine> paint;                            ///< left to right
+  double end_s = std::numeric_limits<double>::infinity();  ///< [m] where the recorded lines end
 
   RoadPlace at(double s, double l) const;
   /// The places on the center of a lane at rising distances [m] along it from where it passes s; those past
-  /// the end of the road are missing.
+  /// the end of the road, or of the lines, are missing.
   std::vector<RoadPlace> ahead(const TrueLane& lane, double s, const std::vector<double>& distances) const;
   /// The lanes that a vehicle l [m] beside the reference curve may be said to be in: one, or near the line
   /// between two of them, both. By index.

@@ -57,6 +57,7 @@ struct SpeedChange {
 struct VehicleSimulationConfig {
   std::uint64_t seed = 1;
   double start_s = 0.0;             ///< [m] along the line
+  double stop_s = 0.0;              ///< [m] along an open line, where the vehicle stops; 0: at its end
   double wander = 0.2;              ///< [m] greatest lateral offset from the line
   double wander_wavelength = 80.0;  ///< [m] of the slowest sway
   double offset = 0.0;              ///< [m] to the left of the line, about which the vehicle wanders
