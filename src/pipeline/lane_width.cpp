@@ -13,10 +13,12 @@ enum class Side { kLeft = 1, kRight = -1 };
 constexpr double kSearchStep = 1.0;  // [m] between the places where narrowness is looked for
 constexpr double kShortestLane =
     30.0;  // [m] ahead of the vehicle; what is left of a lane must be worth a change
-constexpr double kBlendLength = 10.0;  // [m] over which a border leaves the midline where the neighbour ends
-constexpr double kSharpestFold = 0.8;  // of the radius: a border farther inside a curve would fold
-constexpr double kJoinGap = 0.1;       // [m] nearer to the shared part no point is added
-constexpr double kAlmostSquare = 0.1;  // [rad] past its end the other lane still counts as beside
+constexpr double kBlendLength = 10.0;   // [m] over which a border leaves the midline where the neighbour ends
+constexpr double kSharpestFold = 0.8;   // of the radius: a border farther inside a curve would fold
+constexpr double kJoinGap = 0.1;        // [m] nearer to the shared part no point is added
+constexpr double kLeastSideways = 0.3;  // of the spacing
+constexpr double kSameBorder = 0.01;    // [m] apart that two borders may be and still be one
+constexpr double kAlmostSquare = 0.1;   // [rad] past its end the other lane still counts as beside
 
 /// What lies beside one vertex of a lane.
 struct Beside {
@@ -24,6 +26,7 @@ struct Beside {
   Point2 point;          ///< of the other centerline
   double spacing = 0.0;  ///< [m]
   double s = 0.0;        ///< [m] along the other centerline
+  bool aside = true;     ///< false: it lies ahead or behind rather than to a side
 };
 
 std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
@@ -35,7 +38,9 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
     const Foot foot = walker.next(vertex.position);
     const double spacing = std::sqrt(foot.squared_distance);
     const double start = other.points[foot.segment].s, end = other.points[foot.segment + 1].s;
-    result.push_back({true, foot.point, spacing, start + foot.fraction * (end - start)});
+    const double sideways = std::abs(cross(vertex.direction, foot.point - vertex.position));
+    result.push_back({true, foot.point, spacing, start + foot.fraction * (end - start),
+                      sideways > kLeastSideways * spacing});
     if (walker.beyond_end(foot)) {
       const PathPoint& end_vertex = foot.fraction < 0.5 ? other.points.front() : other.points.back();
       const double past_end = std::abs(end_vertex.direction.dot(vertex.position - foot.point));
@@ -49,6 +54,7 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
 std::optional<double> first_narrow_place(const LanePath& lane, const LanePath& better, double spacing) {
   const Polyline centerline = positions_of(better.points);
   PolylineWalker walker(centerline);
+  const double step = std::min(kSearchStep, 0.5 * spacing);
   double s = 0.0;
   std::size_t last = 0;
   for (std::size_t i = 0; i + 1 < lane.points.size(); ++i) {
@@ -59,7 +65,7 @@ std::optional<double> first_narrow_place(const LanePath& lane, const LanePath& b
       last = i;
       const double distance = std::sqrt(foot.squared_distance);
       if (!walker.beyond_end(foot) && distance < spacing) return s;
-      s += std::max(kSearchStep, distance - spacing);  // it comes no nearer by more than the way between
+      s += std::max(step, distance - spacing);  // it comes no nearer by more than the way between
     }
   }
   return std::nullopt;
@@ -144,12 +150,13 @@ std::optional<Stretch> stretch_beside(const std::vector<Beside>& beside) {
   return stretch;
 }
 
-/// Whether the lanes are neighbours: beside each other on more than one vertex, and nowhere too far apart.
+/// Whether the lanes are neighbours: beside each other on more than one vertex, and nowhere too far apart or
+/// across.
 bool share_border(const std::vector<Beside>& beside, const std::optional<Stretch>& stretch,
                   double max_spacing) {
   return stretch && stretch->first < stretch->last &&
          std::all_of(beside.begin(), beside.end(), [max_spacing](const Beside& other) {
-           return !other.exists || other.spacing <= max_spacing;
+           return !other.exists || (other.aside && other.spacing <= max_spacing);
          });
 }
 
@@ -257,8 +264,10 @@ LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_wid
                                    [](const Middle& point) { return point.left_s; });
       borders.left[i + 1] = prolonged(middle, right, right.left_half_width, Side::kLeft,
                                       [](const Middle& point) { return point.right_s; });
-      borders.left_is_shared[i + 1] = true;
-    } else {
+      // Lines that fold beside each other, as no lanes do, have no border between them.
+      borders.left_is_shared[i + 1] = widest_gap(borders.right[i], borders.left[i + 1]).width <= kSameBorder;
+    }
+    if (!borders.left_is_shared[i + 1]) {
       borders.right[i] = own_border(left, beside, left.right_half_width, Side::kRight);
       borders.left[i + 1] = own_border(right, look_beside(right, left), right.left_half_width, Side::kLeft);
     }

@@ -271,5 +271,22 @@ TEST(NarrowLanes, AreFoundBetweenSparseVertices) {
   }
 }
 
+TEST(NarrowLanes, AreFoundWhereTheyOverlapOnAShortStretch) {
+  // The one ends 0.2 m past the start of the other; a narrow vehicle would be let between them.
+  std::vector<LanePath> lanes = {straight_lane("ahead", 0.0, 1, 10.0, 60.0),
+                                 straight_lane("here", 0.0, 0, -2.0, 10.2, 0.2)};
+  EXPECT_EQ(drop_narrow_lanes(lanes, 0.08).size(), 1u);
+  EXPECT_EQ(ids_of(lanes), std::vector<std::string>({"here"}));
+}
+
+TEST(Borders, OfLinesThatFoldBesideEachOtherAreNotShared) {
+  const LanePath zigzag = lane("zigzag", {{-1.0, 2.0}, {0.0, 3.2}, {-0.8, 4.3}});
+  const LanePath other = lane("other", {{-1.0, -0.9}, {0.1, 0.2}, {-0.6, 1.3}});
+  const LaneBorders borders = find_borders({zigzag, other}, kMaxHalfWidth);
+  if (borders.left_is_shared[1]) {
+    EXPECT_LE(widest_gap(borders.right[0], borders.left[1]).width, 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace relative_map::core
