@@ -23,17 +23,24 @@ std::string seconds_text(Time duration) {
 
 }  // namespace
 
-void RelativeMapPipeline::set_localization(const Localization& link,
+bool RelativeMapPipeline::set_localization(const Localization& link,
                                            const std::optional<Eigen::Isometry3d>& link_from_base) {
   if (localization_ && link.stamp < localization_->input.stamp) {
-    if (localization_->input.stamp - link.stamp < kLate) return;
+    if (localization_->input.stamp - link.stamp < kLate) return false;
     reset();
   }
   localization_ = check_localization(link);
-  if (localization_->refusal) return;
+  if (localization_->refusal) return true;
   if (link_from_base) localization_->input = carry_to_base(localization_->input, *link_from_base);
   const auto state = make_vehicle_state(localization_->input, fresh_chassis(link.stamp));
   if (const auto* vehicle = std::get_if<VehicleState>(&state)) poses_.add(*vehicle);
+  return true;
+}
+
+void RelativeMapPipeline::set_lane_markers(const LaneMarkers& markers) {
+  Checked<LaneMarkers> checked = check_lane_markers(markers);
+  marker_remarks_ = std::move(checked.remarks);
+  markers_ = std::move(checked.input);
 }
 
 std::optional<Chassis> RelativeMapPipeline::fresh_chassis(Time now) const {
@@ -47,6 +54,7 @@ void RelativeMapPipeline::reset() {
   localization_.reset();
   chassis_.reset();
   markers_.reset();
+  marker_remarks_.clear();
   poses_.clear();
   current_id_.clear();
   lanes_in_reach_.reset();
@@ -99,7 +107,11 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
           remarks_.push_back("lane markers: " + *why);
           markers.reset();
         } else {
-          fusion = fuse(*markers, *lanes, current);
+          if (auto fused = fuse(*markers, *lanes, current)) {
+            fusion = std::move(*fused);
+          } else {
+            markers.reset();
+          }
         }
       }
       return finish(std::move(*lanes), current, markers, std::move(fusion), vehicle);
@@ -130,6 +142,7 @@ std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) 
   if (localization_->refusal) return *localization_->refusal;
   add_remarks(localization_->remarks);
   if (chassis_) add_remarks(chassis_->remarks);
+  add_remarks(marker_remarks_);
   return make_vehicle_state(localization_->input, fresh_chassis(now));
 }
 
@@ -153,6 +166,8 @@ std::optional<MarkerPath> RelativeMapPipeline::marker_path(const VehicleState& v
   auto made = make_marker_path(*markers_, base_from_sensor, vehicle.speed, config_->map_param,
                                config_->navigation_lane);
   if (const auto* why = std::get_if<std::string>(&made)) return unusable(*why);
+  if (!find_kinks(std::get<MarkerPath>(made).path.points).empty())
+    return unusable("no vehicle could follow them");
   return std::get<MarkerPath>(std::move(made));
 }
 
@@ -168,10 +183,16 @@ std::size_t RelativeMapPipeline::choose_current(const std::vector<LanePath>& lan
   return current;
 }
 
-FusionState RelativeMapPipeline::fuse(const MarkerPath& markers, std::vector<LanePath>& lanes,
-                                      std::size_t& current) {
+std::optional<FusionState> RelativeMapPipeline::fuse(const MarkerPath& markers, std::vector<LanePath>& lanes,
+                                                     std::size_t& current) {
+  const LanePath line = lanes[current];
   FusionState fusion = fuse_fixed_weight(markers, config_->navigation_lane.lane_marker_weight,
                                          config_->lane_fusion.fade_length, lanes[current]);
+  if (!find_kinks(lanes[current].points).empty()) {
+    remarks_.push_back("lane markers: no vehicle could follow line '" + line.id + "' where they move it");
+    lanes[current] = line;
+    return std::nullopt;
+  }
   // The lane has moved: others may lie too near to where it is now, which is where the paint says.
   const std::string id = lanes[current].id;
   sort_left_to_right(lanes);

@@ -27,11 +27,11 @@ class RelativeMapPipeline {
     lanes_in_reach_.set_lines(std::move(lines));
   }
   /// Of the link whose place in the vehicle `link_from_base` gives; none: of the body frame itself.
-  /// A message a little older than the newest one is late and dropped; one much older sets time back.
-  void set_localization(const Localization& link,
+  /// A message a little older than the newest one is late and dropped: false; one much older sets time back.
+  bool set_localization(const Localization& link,
                         const std::optional<Eigen::Isometry3d>& link_from_base = std::nullopt);
   void set_chassis(const Chassis& chassis) { chassis_ = check_chassis(chassis); }
-  void set_lane_markers(const LaneMarkers& markers) { markers_ = markers; }
+  void set_lane_markers(const LaneMarkers& markers);
   /// Forgets all but configuration and lines, as after a jump of the clock.
   void reset();
 
@@ -52,7 +52,8 @@ class RelativeMapPipeline {
   void add_remarks(const std::vector<std::string>& remarks);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
   std::size_t choose_current(const std::vector<LanePath>& lanes) const;
-  FusionState fuse(const MarkerPath& markers, std::vector<LanePath>& lanes, std::size_t& current);
+  std::optional<FusionState> fuse(const MarkerPath& markers, std::vector<LanePath>& lanes,
+                                  std::size_t& current);
   RelativeMap finish(std::vector<LanePath> lanes, std::size_t current,
                      const std::optional<MarkerPath>& markers, FusionState fusion,
                      const VehicleState& vehicle);
@@ -62,6 +63,7 @@ class RelativeMapPipeline {
   std::optional<Checked<Localization>> localization_;  ///< of the body frame
   std::optional<Checked<Chassis>> chassis_;
   std::optional<LaneMarkers> markers_;
+  std::vector<std::string> marker_remarks_;  ///< on their numbers
   PoseBuffer poses_;
   std::string current_id_;  ///< of the last map
   std::uint32_t sequence_num_ = 0;
