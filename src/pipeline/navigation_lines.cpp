@@ -48,14 +48,16 @@ Polyline positions(const PathPoints& points, std::size_t begin, std::size_t end)
   return result;
 }
 
-/// Whether all points from `begin` on lie on the line before them.
+/// Whether all points from `begin` on lie on the line before them, and lead the same way.
 bool repeats_itself(const PathPoints& points, std::size_t begin, double half_width) {
   const Polyline lap = positions(points, 0, begin);
   PolylineWalker walker(lap);
-  const Polyline rest = positions(points, begin, points.size());
-  return std::all_of(rest.begin(), rest.end(), [&](const Point2& point) {
-    return walker.next(point).squared_distance <= half_width * half_width;
-  });
+  return std::all_of(
+      points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(), [&](const PathPoint& point) {
+        const Foot foot = walker.next(point.position);
+        const Point2 along = lap[foot.segment + 1] - lap[foot.segment];
+        return foot.squared_distance <= half_width * half_width && along.dot(point.direction) > 0.0;
+      });
 }
 
 /// How many points a line has up to where it reaches its start again, to repeat itself from there on.
