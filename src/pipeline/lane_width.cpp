@@ -26,7 +26,7 @@ struct Beside {
   Point2 point;          ///< of the other centerline
   double spacing = 0.0;  ///< [m]
   double s = 0.0;        ///< [m] along the other centerline
-  bool aside = true;     ///< false: it lies ahead or behind rather than to a side
+  bool to_right = true;  ///< false: it lies ahead, behind or to the left
 };
 
 std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
@@ -38,9 +38,9 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
     const Foot foot = walker.next(vertex.position);
     const double spacing = std::sqrt(foot.squared_distance);
     const double start = other.points[foot.segment].s, end = other.points[foot.segment + 1].s;
-    const double sideways = std::abs(cross(vertex.direction, foot.point - vertex.position));
+    const double to_left = cross(vertex.direction, foot.point - vertex.position);
     result.push_back({true, foot.point, spacing, start + foot.fraction * (end - start),
-                      sideways > kLeastSideways * spacing});
+                      to_left < -kLeastSideways * spacing});
     if (walker.beyond_end(foot)) {
       const PathPoint& end_vertex = foot.fraction < 0.5 ? other.points.front() : other.points.back();
       const double past_end = std::abs(end_vertex.direction.dot(vertex.position - foot.point));
@@ -150,13 +150,13 @@ std::optional<Stretch> stretch_beside(const std::vector<Beside>& beside) {
   return stretch;
 }
 
-/// Whether the lanes are neighbours: beside each other on more than one vertex, and nowhere too far apart or
-/// across.
+/// Whether a lane and the one to its right are neighbours: beside each other on more than one vertex, nowhere
+/// too far apart, and on these sides all along.
 bool share_border(const std::vector<Beside>& beside, const std::optional<Stretch>& stretch,
                   double max_spacing) {
   return stretch && stretch->first < stretch->last &&
          std::all_of(beside.begin(), beside.end(), [max_spacing](const Beside& other) {
-           return !other.exists || (other.aside && other.spacing <= max_spacing);
+           return !other.exists || (other.to_right && other.spacing <= max_spacing);
          });
 }
 

@@ -279,13 +279,12 @@ TEST(NarrowLanes, AreFoundWhereTheyOverlapOnAShortStretch) {
   EXPECT_EQ(ids_of(lanes), std::vector<std::string>({"here"}));
 }
 
-TEST(Borders, OfLinesThatFoldBesideEachOtherAreNotShared) {
-  const LanePath zigzag = lane("zigzag", {{-1.0, 2.0}, {0.0, 3.2}, {-0.8, 4.3}});
-  const LanePath other = lane("other", {{-1.0, -0.9}, {0.1, 0.2}, {-0.6, 1.3}});
-  const LaneBorders borders = find_borders({zigzag, other}, kMaxHalfWidth);
-  if (borders.left_is_shared[1]) {
-    EXPECT_LE(widest_gap(borders.right[0], borders.left[1]).width, 0.01);
-  }
+TEST(Borders, OfLanesThatChangeSidesAreNotShared) {
+  // Round a U-turn of coarse vertices, the one that was left is right.
+  const Polyline uturn = {{-2.0, 0.0}, {20.0, 0.0}, {22.0, 2.0}, {22.0, 18.0}, {20.0, 20.0}, {-2.0, 20.0}};
+  Polyline beside = uturn;
+  for (Point2& point : beside) point += Point2(0.0, -3.5);
+  EXPECT_FALSE(find_borders({lane("left", uturn), lane("right", beside)}, kMaxHalfWidth).left_is_shared[1]);
 }
 
 }  // namespace
