@@ -38,9 +38,9 @@ constexpr const char* kUsage =
 
 constexpr double kLongestPause = 60.0;  // [s] without input that is filled with empty maps
 
-/// [s] As numbers: a difference of times throws where it is more than 68 years.
+/// [s] Exact, and of any size: ros::Duration holds 68 years, and throws where a stamp is scrap.
 double seconds_between(const ros::Time& from, const ros::Time& to) {
-  return to.toSec() - from.toSec();
+  return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec() - from.toNSec()));
 }
 
 struct Arguments {

@@ -17,9 +17,9 @@ struct Instant {
   ros::Time at, stamp;
 };
 
-/// [s] As numbers: a difference of times throws where it is more than 68 years, as of a stamp that is scrap.
+/// [s] Exact, and of any size: ros::Duration holds 68 years, and throws where a stamp is scrap.
 double seconds_between(const ros::Time& from, const ros::Time& to) {
-  return to.toSec() - from.toSec();
+  return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec() - from.toNSec()));
 }
 
 /// An input that has to come in regularly.
