@@ -6,6 +6,7 @@ namespace relative_map::core {
 
 namespace {
 
+constexpr double kRightAngle = 0.005;   // cosine that still counts as 0
 constexpr std::size_t kLookAround = 4;  // segments past the nearest one that may be nearer yet
 
 /// Signed curvature of the circle through three points; 0 where two of them coincide.
@@ -76,6 +77,18 @@ void compute_geometry(PathPoints& points, Ends ends, double lap_length) {
   }
 }
 
+std::vector<std::size_t> find_kinks(const PathPoints& points, Ends ends) {
+  std::vector<std::size_t> kinks;
+  const std::size_t n = points.size(), open = ends == Ends::kOpen ? 1 : 0;
+  for (std::size_t i = open; i + open < n; ++i) {
+    const Point2 before = points[i].position - points[i == 0 ? n - 1 : i - 1].position;
+    const Point2 after = points[i + 1 == n ? 0 : i + 1].position - points[i].position;
+    const double along = before.dot(after);
+    if (along < 0.0 && std::abs(along) > kRightAngle * before.norm() * after.norm()) kinks.push_back(i);
+  }
+  return kinks;
+}
+
 PathPoint interpolate(const PathPoints& points, double s, std::size_t& hint) {
   if (s <= points.front().s) {
     hint = 0;
@@ -142,6 +155,19 @@ Foot PolylineWalker::search(const Point2& point) {
   for (std::size_t i = segment_; i-- > 0 && i + kLookAround >= best.segment;) take_nearer(foot_on(i));
   segment_ = best.segment;
   return best;
+}
+
+Gap widest_gap(const Polyline& line, const Polyline& other) {
+  PolylineWalker walker(other);
+  Gap widest;
+  double squared = 0.0;
+  for (const Point2& point : line) {
+    const Foot foot = walker.next(point);
+    if (foot.squared_distance <= squared || walker.beyond_end(foot)) continue;
+    squared = foot.squared_distance;
+    widest = {std::sqrt(squared), point};
+  }
+  return widest;
 }
 
 double chord_length(const Polyline& points) {

@@ -71,18 +71,23 @@ std::vector<Foot> SegmentIndex::passes(const PathPoints& points, const Point2& p
   }
 
   const bool closed = segments_ == points.size();
-  const auto follows = [&](std::size_t a, std::size_t b) {
-    return b == a + 1 || (closed && a + 1 == segments_ && b == 0);
+  const auto along = [&](std::size_t segment) -> Point2 {
+    return points[segment + 1 == points.size() ? 0 : segment + 1].position - points[segment].position;
+  };
+  // Where a path turns back, the ways there and back are two passes, unless their tip is what is near.
+  const auto follows = [&](const Foot& a, const Foot& b) {
+    const bool adjacent =
+        b.segment == a.segment + 1 || (closed && a.segment + 1 == segments_ && b.segment == 0);
+    const bool at_tip = a.fraction >= 1.0 || b.fraction <= 0.0;
+    return adjacent && (at_tip || along(a.segment).dot(along(b.segment)) >= 0.0);
   };
   std::vector<Foot> minima;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const Foot& before = near[i == 0 ? near.size() - 1 : i - 1];
     const Foot& after = near[i + 1 == near.size() ? 0 : i + 1];
     // Of two segments that share the nearest vertex only the first counts: < behind, <= ahead.
-    const bool rises_behind =
-        !follows(before.segment, near[i].segment) || near[i].squared_distance < before.squared_distance;
-    const bool rises_ahead =
-        !follows(near[i].segment, after.segment) || near[i].squared_distance <= after.squared_distance;
+    const bool rises_behind = !follows(before, near[i]) || near[i].squared_distance < before.squared_distance;
+    const bool rises_ahead = !follows(near[i], after) || near[i].squared_distance <= after.squared_distance;
     if (rises_behind && rises_ahead) minima.push_back(near[i]);
   }
   return minima;

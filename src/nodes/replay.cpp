@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -30,7 +31,17 @@ constexpr const char* kUsage =
     "the map's pipeline and writes the maps to OUT.bag on /relative_map, each at its tick's time.\n"
     "\n"
     "  --config FILE   parameters as in config/relative_map.yaml\n"
-    "  --urdf FILE     the vehicle, for its footprint\n";
+    "  --urdf FILE     the vehicle, for its footprint\n"
+    "\n"
+    "A pause of more than a minute without input, as where a clock was set, gets maps for its first minute "
+    "only.\n";
+
+constexpr double kLongestPause = 60.0;  // [s] without input that is filled with empty maps
+
+/// [s] Exact, and of any size: ros::Duration holds 68 years, and throws where a stamp is scrap.
+double seconds_between(const ros::Time& from, const ros::Time& to) {
+  return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec() - from.toNSec()));
+}
 
 struct Arguments {
   std::string input, output, config, urdf;
@@ -127,14 +138,28 @@ class Replay {
           "it has none of the topics /navigation, /localization, /chassis, /perception/lane_markers");
     }
     const ros::Time start = view.getBeginTime();
-    ProgressBar progress((view.getEndTime() - start).toSec());
+    ProgressBar progress(seconds_between(start, view.getEndTime()));
     std::uint64_t tick = 0;
     // Computed from the start each time: a sum of periods would drift.
-    const auto tick_time = [&] { return start + ros::Duration(static_cast<double>(tick) / config_.rate); };
+    const auto tick_time = [&] {
+      const auto since_start =
+          static_cast<std::uint64_t>(std::llround(1e9 * static_cast<double>(tick) / config_.rate));
+      return ros::Time().fromNSec(start.toNSec() + since_start);
+    };
+    ros::Time last = start;
     for (const rosbag::MessageInstance& message : view) {
-      for (; tick_time() < message.getTime(); ++tick) publish(tick_time());
+      const ros::Time now = message.getTime();
+      if (seconds_between(last, now) > kLongestPause) {
+        const ros::Time end = last + ros::Duration(kLongestPause);
+        for (; tick_time() < end; ++tick) publish(tick_time());
+        std::fprintf(stderr, "no input for %.0f s from %.3f on: only the first %.0f s of them get maps\n",
+                     seconds_between(last, now), last.toSec(), kLongestPause);
+        tick = static_cast<std::uint64_t>(seconds_between(start, now) * config_.rate);  // on the same grid
+      }
+      for (; tick_time() < now; ++tick) publish(tick_time());
       deliver(message);
-      progress.show((message.getTime() - start).toSec());
+      last = now;
+      progress.show(seconds_between(start, now));
     }
     for (; tick_time() <= view.getEndTime(); ++tick) publish(tick_time());
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace relative_map::core {
 
@@ -100,6 +101,28 @@ Checked<Localization> check_localization(const Localization& link) {
   normalize_orientation(checked);
   settle_direction(checked);
   limit_motion(checked);
+  return checked;
+}
+
+Checked<LaneMarkers> check_lane_markers(const LaneMarkers& markers) {
+  Checked<LaneMarkers> checked{markers, {}, std::nullopt};
+  const auto check = [&](const char* name, LaneMarker& marker) {
+    const std::pair<const char*, double> numbers[] = {{"quality", marker.quality},
+                                                      {"c0_position", marker.cubic.c0},
+                                                      {"c1_heading_angle", marker.cubic.c1},
+                                                      {"c2_curvature", marker.cubic.c2},
+                                                      {"c3_curvature_derivative", marker.cubic.c3},
+                                                      {"longitude_start", marker.longitude_start},
+                                                      {"view_range", marker.view_range}};
+    for (const auto& [field, value] : numbers) {
+      if (std::isfinite(value)) continue;
+      checked.remarks.push_back(text("lane markers: ", name, ".", field, " is ", value, ": not used"));
+      marker.quality = 0.0;
+      return;
+    }
+  };
+  check("left_lane_marker", checked.input.left);
+  check("right_lane_marker", checked.input.right);
   return checked;
 }
 

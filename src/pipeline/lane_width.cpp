@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace relative_map::core {
 
@@ -10,14 +9,13 @@ namespace {
 
 enum class Side { kLeft = 1, kRight = -1 };
 
-constexpr double kSearchStep = 1.0;  // [m] between the places where narrowness is looked for
-constexpr double kShortestLane =
-    30.0;  // [m] ahead of the vehicle; what is left of a lane must be worth a change
 constexpr double kForgetLength = 50.0;  // [m] past the paint over which a shared border goes to the middle
 constexpr double kLeastShare = 0.3;     // of the spacing, for each of two neighbours
 constexpr double kBlendLength = 10.0;   // [m] over which a border leaves the midline where the neighbour ends
 constexpr double kSharpestFold = 0.8;   // of the radius: a border farther inside a curve would fold
 constexpr double kJoinGap = 0.1;        // [m] nearer to the shared part no point is added
+constexpr double kLeastSideways = 0.3;  // of the spacing
+constexpr double kSameBorder = 0.01;    // [m] apart that two borders may be and still be one
 constexpr double kAlmostSquare = 0.1;   // [rad] past its end the other lane still counts as beside
 
 /// What lies beside one vertex of a lane.
@@ -26,6 +24,7 @@ struct Beside {
   Point2 point;          ///< of the other centerline
   double spacing = 0.0;  ///< [m]
   double s = 0.0;        ///< [m] along the other centerline
+  bool to_right = true;  ///< false: it lies ahead, behind or to the left
 };
 
 std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
@@ -37,7 +36,9 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
     const Foot foot = walker.next(vertex.position);
     const double spacing = std::sqrt(foot.squared_distance);
     const double start = other.points[foot.segment].s, end = other.points[foot.segment + 1].s;
-    result.push_back({true, foot.point, spacing, start + foot.fraction * (end - start)});
+    const double to_left = cross(vertex.direction, foot.point - vertex.position);
+    result.push_back({true, foot.point, spacing, start + foot.fraction * (end - start),
+                      to_left < -kLeastSideways * spacing});
     if (walker.beyond_end(foot)) {
       const PathPoint& end_vertex = foot.fraction < 0.5 ? other.points.front() : other.points.back();
       const double past_end = std::abs(end_vertex.direction.dot(vertex.position - foot.point));
@@ -45,67 +46,6 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
     }
   }
   return result;
-}
-
-/// Arc length at which `lane` first comes too near to `better`; none: it never does.
-std::optional<double> first_narrow_place(const LanePath& lane, const LanePath& better, double spacing) {
-  const Polyline centerline = positions_of(better.points);
-  PolylineWalker walker(centerline);
-  double s = 0.0;
-  std::size_t last = 0;
-  for (std::size_t i = 0; i + 1 < lane.points.size(); ++i) {
-    const PathPoint &a = lane.points[i], &b = lane.points[i + 1];
-    while (s < b.s) {
-      const Point2 place = a.position + (s - a.s) / (b.s - a.s) * (b.position - a.position);
-      const Foot foot = walker.next(place, std::max<std::size_t>(1, i - last));
-      last = i;
-      const double distance = std::sqrt(foot.squared_distance);
-      if (!walker.beyond_end(foot) && distance < spacing) return s;
-      s += std::max(kSearchStep, distance - spacing);  // it comes no nearer by more than the way between
-    }
-  }
-  return std::nullopt;
-}
-
-/// Ends a lane before `s` [m]; false leaves it as it is: what remained of it ahead would be too short.
-bool cut_short(LanePath& lane, double s) {
-  const auto end = std::find_if(lane.points.begin(), lane.points.end(),
-                                [s](const PathPoint& point) { return point.s >= s; });
-  if (end - lane.points.begin() < 2 || (end - 1)->s - lane.s_at_vehicle < kShortestLane) return false;
-  lane.points.erase(end, lane.points.end());
-  lane.remaining = lane.points.back().s - lane.s_at_vehicle;
-  return true;
-}
-
-std::string narrow_sentence(const LanePath& lane, const LanePath& better, const char* verb, double ahead) {
-  std::ostringstream sentence;
-  sentence.precision(3);
-  sentence << "line '" << lane.id << "' " << verb << ": " << std::max(0.0, ahead)
-           << " m ahead it comes so near to '" << better.id << "' that the vehicle does not fit";
-  return sentence.str();
-}
-
-/// One pass over the neighbours; true if a lane was taken out and the neighbours are others now.
-bool drop_one(std::vector<LanePath>& lanes, double half_width, const std::string& kept,
-              std::vector<std::string>& sentences) {
-  for (std::size_t i = 0; i + 1 < lanes.size(); ++i) {
-    const bool right_is_better =
-        lanes[i].priority > lanes[i + 1].priority ? lanes[i].id != kept : lanes[i + 1].id == kept;
-    const std::size_t worse = right_is_better ? i : i + 1;
-    const LanePath& better = lanes[worse == i ? i + 1 : i];
-    LanePath& lane = lanes[worse];
-    const std::optional<double> narrow = first_narrow_place(lane, better, 2.0 * half_width);
-    if (!narrow) continue;
-    const double ahead = *narrow - lane.s_at_vehicle;
-    if (cut_short(lane, *narrow)) {
-      sentences.push_back(narrow_sentence(lane, better, "is cut short", ahead));
-      continue;
-    }
-    sentences.push_back(narrow_sentence(lane, better, "is left out", ahead));
-    lanes.erase(lanes.begin() + static_cast<std::ptrdiff_t>(worse));
-    return true;
-  }
-  return false;
 }
 
 /// [1/m] over a stretch of `reach` [m] to both sides: a noisy line has sharp bends at single vertices.
@@ -146,12 +86,13 @@ std::optional<Stretch> stretch_beside(const std::vector<Beside>& beside) {
   return stretch;
 }
 
-/// Whether the lanes are neighbours: beside each other on more than one vertex, and nowhere too far apart.
+/// Whether a lane and the one to its right are neighbours: beside each other on more than one vertex, nowhere
+/// too far apart, and on these sides all along.
 bool share_border(const std::vector<Beside>& beside, const std::optional<Stretch>& stretch,
                   double max_spacing) {
   return stretch && stretch->first < stretch->last &&
          std::all_of(beside.begin(), beside.end(), [max_spacing](const Beside& other) {
-           return !other.exists || other.spacing <= max_spacing;
+           return !other.exists || (other.to_right && other.spacing <= max_spacing);
          });
 }
 
@@ -262,14 +203,6 @@ Polyline prolonged(const std::vector<Middle>& midline, const LanePath& lane, dou
 
 }  // namespace
 
-std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width,
-                                           const std::string& kept) {
-  std::vector<std::string> sentences;
-  while (drop_one(lanes, half_width, kept, sentences)) {
-  }
-  return sentences;
-}
-
 LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_width) {
   const std::size_t n = lanes.size();
   LaneBorders borders{std::vector<Polyline>(n), std::vector<Polyline>(n), std::vector<bool>(n, false)};
@@ -285,8 +218,10 @@ LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_wid
                                    [](const Middle& point) { return point.left_s; });
       borders.left[i + 1] = prolonged(middle, right, right.left_half_width, Side::kLeft,
                                       [](const Middle& point) { return point.right_s; });
-      borders.left_is_shared[i + 1] = true;
-    } else {
+      // Lines that fold beside each other, as no lanes do, have no border between them.
+      borders.left_is_shared[i + 1] = widest_gap(borders.right[i], borders.left[i + 1]).width <= kSameBorder;
+    }
+    if (!borders.left_is_shared[i + 1]) {
       borders.right[i] = own_border(left, beside, left.right_half_width, Side::kRight);
       borders.left[i + 1] = own_border(right, look_beside(right, left), right.left_half_width, Side::kLeft);
     }

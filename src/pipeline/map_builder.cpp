@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSampleStep = 1.0;      // [m] between width samples: vertices may be far denser
 constexpr double kRoadSampleStep = 5.0;  // [m]
+constexpr double kHeadingError = 0.008;  // [rad] between a path's own headings and its points
 
 /// Distance to the border from a vertex every `step` [m], the first and the last one included.
 std::vector<WidthSample> measure(const PathPoints& path, const Polyline& border, double step) {
@@ -71,7 +72,28 @@ void add_paint(RelativeMap& map, std::size_t current, const SeenPaint& paint) {
   if (!lane.right_neighbor_id.empty()) add(map.lanes[current + 1].left_boundary, paint.right);
 }
 
+/// Whether the headings of a path are those of its points, of the circles through three of them.
+bool headings_fit(const PathPoints& path) {
+  const auto fits = [](const Point2& tangent, const Point2& direction) {
+    return std::abs(cross(tangent, direction)) <= kHeadingError * tangent.norm() &&
+           tangent.dot(direction) > 0.0;
+  };
+  for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+    const Point2 before = path[i].position - path[i - 1].position;
+    const Point2 after = path[i + 1].position - path[i].position;
+    if (!fits(before * after.squaredNorm() + after * before.squaredNorm(), path[i].direction)) return false;
+  }
+  const auto fits_at_end = [&](const PathPoint& end, const Point2& chord, double sign) {
+    const double to_chord = std::asin(std::clamp(0.5 * end.kappa * chord.norm(), -1.0, 1.0));
+    return fits(Pose2(Point2::Zero(), sign * to_chord).rotate_to_parent(chord), end.direction);
+  };
+  const std::size_t last = path.size() - 1;
+  return fits_at_end(path[0], path[1].position - path[0].position, -1.0) &&
+         fits_at_end(path[last], path[last].position - path[last - 1].position, 1.0);
+}
+
 Lane make_lane(LanePath path, double speed_limit) {
+  if (!headings_fit(path.points)) compute_geometry(path.points);
   Lane lane;
   lane.id = std::move(path.id);
   lane.name = std::move(path.name);

@@ -37,6 +37,16 @@ Segment segment_of(const NavigationLine& line, std::size_t index) {
   return {a, b, (stitch ? line.length : b.s) - a.s};
 }
 
+/// [rad] of the line; at a kink, where the line has no tangent, of its segment.
+double heading_at(const NavigationLine& line, const Foot& foot) {
+  const Segment segment = segment_of(line, foot.segment);
+  if (line.is_kink(foot.segment) || line.is_kink((foot.segment + 1) % line.points.size())) {
+    const Point2 along = segment.b.position - segment.a.position;
+    return std::atan2(along.y(), along.x());
+  }
+  return interpolate_angle(segment.a.theta, segment.b.theta, foot.fraction);
+}
+
 /// The vehicle's place beside one foot. Beyond the ends of an open line s and l are those of its tangent.
 LineProjection project(const NavigationLine& line, const Foot& foot, const Point2& position, double heading) {
   const Segment segment = segment_of(line, foot.segment);
@@ -46,7 +56,7 @@ LineProjection project(const NavigationLine& line, const Foot& foot, const Point
   projection.nearest_vertex = foot.fraction < 0.5 ? foot.segment : (foot.segment + 1) % line.points.size();
   projection.s = segment.a.s + foot.fraction * segment.length;
   projection.distance = std::sqrt(foot.squared_distance);
-  const double theta = interpolate_angle(segment.a.theta, segment.b.theta, foot.fraction);
+  const double theta = heading_at(line, foot);
   const Point2 direction(std::cos(theta), std::sin(theta));
   const Point2 offset = position - foot.point;
   const double side = cross(direction, offset);

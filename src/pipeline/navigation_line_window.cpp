@@ -1,6 +1,7 @@
 #include "relative_map/pipeline/navigation_line_window.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace relative_map::core {
 
@@ -29,6 +30,7 @@ class VertexCursor {
     --vertex_;
   }
   const PathPoint& point() const { return line_.points[vertex_]; }
+  bool at_kink() const { return line_.is_kink(vertex_); }
   double s() const { return lap_start_ + point().s; }
 
  private:
@@ -37,12 +39,20 @@ class VertexCursor {
   double lap_start_ = 0.0;
 };
 
-VertexCursor window_start(const NavigationLine& line, std::size_t nearest_vertex) {
-  VertexCursor cursor(line, nearest_vertex);
+/// [m] along the line from one place to another; the short way round on a lap.
+double way(const NavigationLine& line, double from, double to) {
+  return line.closed() ? std::remainder(to - from, line.length) : to - from;
+}
+
+VertexCursor window_start(const NavigationLine& line, const LineProjection& projection) {
+  VertexCursor cursor(line, projection.nearest_vertex);
   const double nearest_s = cursor.s();
   const double reach = line.thinned ? kThinnedReach : 0.0;
+  const bool vehicle_is_past = way(line, nearest_s, projection.s) >= 0.0;
   for (long behind = 0; cursor.has_previous(); ++behind) {
     if (behind >= kVerticesBehind && nearest_s - cursor.s() >= reach) break;
+    // The nearest vertex may be a kink that is yet ahead.
+    if (cursor.at_kink() && (behind > 0 || vehicle_is_past)) break;
     cursor.previous();
   }
   return cursor;
@@ -55,8 +65,10 @@ LanePath cut_window(const NavigationLine& line, const LineProjection& projection
   const double heading = map_from_base.heading();
   // The vehicle in the line's own coordinates, so that no large number enters the rotation.
   const Pose2 line_from_base(map_from_base.position() - line.origin, heading);
-  VertexCursor cursor = window_start(line, projection.nearest_vertex);
+  VertexCursor cursor = window_start(line, projection);
   const double start = cursor.s();
+  const bool from_kink = cursor.at_kink();
+  bool to_kink = false;
 
   LanePath path;
   path.id = line.id;
@@ -75,13 +87,14 @@ LanePath cut_window(const NavigationLine& line, const LineProjection& projection
     point.theta = angle_difference(vertex.theta, heading);
     point.s = cursor.s() - start;
     path.points.push_back(point);
-    if (point.s > max_length || !cursor.has_next()) break;
+    to_kink = cursor.at_kink() && path.points.size() > 1;
+    if (to_kink || point.s > max_length || !cursor.has_next()) break;
     cursor.next();
   }
   // The start may lie before the stitch that the vehicle has just passed, or the other way round.
-  const double behind =
-      line.closed() ? std::remainder(projection.s - start, line.length) : projection.s - start;
-  path.s_at_vehicle = behind;
+  path.s_at_vehicle = way(line, start, projection.s);
+  if (from_kink || to_kink) compute_geometry(path.points);  // of one side of the kink alone
+  if (to_kink) path.remaining = path.points.back().s - path.s_at_vehicle;
   return path;
 }
 

@@ -5,12 +5,14 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <sstream>
 
 namespace relative_map::core {
 
 namespace {
 
 constexpr double kMinSpacing = 1e-3;    // [m] nearer vertices are one and the same
+constexpr double kFarthest = 1e8;       // [m] no projection of the Earth reaches farther
 constexpr double kMinLapLength = 30.0;  // [m] no vehicle drives a tighter circle
 constexpr double kMaxStitchTurn = 0.5;  // [rad] between the headings of the ends of a lap
 constexpr double kMaxSparseGap = 5.0;   // [m] along a sparsely sampled lap, from its last vertex to its first
@@ -21,8 +23,11 @@ std::string clean_positions(const RecordedLine& recorded, NavigationLine& line,
                             std::vector<std::size_t>& kept) {
   for (std::size_t i = 0; i < recorded.points.size(); ++i) {
     const LinePoint& point = recorded.points[i];
-    if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
-      return "point " + std::to_string(i) + " has a coordinate that is not finite";
+    for (const auto& [field, value] : {std::pair("x", point.x), std::pair("y", point.y)}) {
+      if (std::abs(value) < kFarthest) continue;  // not if it is NaN
+      std::ostringstream fault;
+      fault << field << " of point " << i << " is " << value << (std::isfinite(value) ? " m" : "");
+      return fault.str();
     }
   }
   if (recorded.points.empty()) return "it has no points";
@@ -43,14 +48,16 @@ Polyline positions(const PathPoints& points, std::size_t begin, std::size_t end)
   return result;
 }
 
-/// Whether all points from `begin` on lie on the line before them.
+/// Whether all points from `begin` on lie on the line before them, and lead the same way.
 bool repeats_itself(const PathPoints& points, std::size_t begin, double half_width) {
   const Polyline lap = positions(points, 0, begin);
   PolylineWalker walker(lap);
-  const Polyline rest = positions(points, begin, points.size());
-  return std::all_of(rest.begin(), rest.end(), [&](const Point2& point) {
-    return walker.next(point).squared_distance <= half_width * half_width;
-  });
+  return std::all_of(
+      points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(), [&](const PathPoint& point) {
+        const Foot foot = walker.next(point.position);
+        const Point2 along = lap[foot.segment + 1] - lap[foot.segment];
+        return foot.squared_distance <= half_width * half_width && along.dot(point.direction) > 0.0;
+      });
 }
 
 /// How many points a line has up to where it reaches its start again, to repeat itself from there on.
@@ -132,6 +139,23 @@ bool headings_agree(const RecordedLine& recorded, const std::vector<std::size_t>
   return true;
 }
 
+/// [rad] from the tangent of a circle to a chord of it.
+double tangent_to_chord(double kappa, double chord) {
+  return std::asin(std::clamp(0.5 * kappa * chord, -1.0, 1.0));
+}
+
+/// Whether heading and curvature at a vertex fit the segments before and after it, whichever of them a window
+/// leaves.
+bool fits_segments(const PathPoints& points, std::size_t i, double theta, double kappa) {
+  const auto fits = [&](std::size_t from, double sign) {
+    const Point2 segment = points[from + 1].position - points[from].position;
+    const double along = std::atan2(segment.y(), segment.x());
+    const double expected = along - sign * tangent_to_chord(kappa, segment.norm());
+    return std::abs(angle_difference(theta, expected)) <= 0.008;
+  };
+  return (i == 0 || fits(i - 1, -1.0)) && (i + 1 == points.size() || fits(i, 1.0));
+}
+
 /// Whether the recorded curvatures are those of the headings: point by point, and summed up over a few
 /// metres.
 bool curvatures_agree(const RecordedLine& recorded, const std::vector<std::size_t>& kept,
@@ -141,9 +165,10 @@ bool curvatures_agree(const RecordedLine& recorded, const std::vector<std::size_
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double kappa = recorded.points[kept[i]].kappa;
     if (!(std::abs(kappa - points[i].kappa) <= 0.005 + 0.1 * std::abs(points[i].kappa))) return false;
+    if (!fits_segments(points, i, recorded.points[kept[i]].theta, kappa)) return false;
     if (i == 0) continue;
     turned += 0.5 * (kappa + recorded.points[kept[i - 1]].kappa) * (points[i].s - points[i - 1].s);
-    if (points[i].s - points[anchor].s < 5.0) continue;
+    if (points[i].s - points[anchor].s < 5.0 && i + 1 < points.size()) continue;
     if (std::abs(angle_difference(points[i].theta - points[anchor].theta, turned)) > 0.002) return false;
     anchor = i;
     turned = 0.0;
@@ -175,6 +200,15 @@ void keep_recorded_geometry(const RecordedLine& recorded, const std::vector<std:
   for (std::size_t i = 0; i < points.size(); ++i) points[i].dkappa = recorded.points[kept[i]].dkappa;
 }
 
+std::string kink_sentence(const NavigationLine& line) {
+  std::ostringstream sentence;
+  sentence.precision(3);
+  sentence << "line '" << line.id << "' turns back at s = " << line.points[line.kinks.front()].s << " m";
+  if (line.kinks.size() > 1) sentence << " and at " << line.kinks.size() - 1 << " more points";
+  sentence << ", by more than 90 degrees from point to point: its lane ends there";
+  return sentence.str();
+}
+
 /// The last segment may be of any length, so it does not count.
 bool spacing_varies(const PathPoints& points) {
   double shortest = std::numeric_limits<double>::infinity(), longest = 0.0;
@@ -196,6 +230,7 @@ std::string prepare(const RecordedLine& recorded, const IntakeParam& param, Navi
   const bool stitched = param.stitch_closed_lines && stitch(line, param.lane_half_width);
   if (!stitched) keep_recorded_geometry(recorded, kept, line);
   line.thinned = spacing_varies(line.points);
+  line.kinks = find_kinks(line.points, line.ends);
   line.index = SegmentIndex(line.points, line.ends);
   for (const PathPoint& point : line.points) line.bounds.extend(point.position);
   return "";
@@ -253,6 +288,7 @@ std::shared_ptr<const NavigationLines> prepare_navigation_lines(const Navigation
       result->faults.push_back("line '" + line.id + "' is left out: " + fault);
       continue;
     }
+    if (!line.kinks.empty()) result->faults.push_back(kink_sentence(line));
     result->lines.push_back(std::move(line));
   }
   make_priorities_unique(*result);

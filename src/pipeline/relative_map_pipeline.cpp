@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "relative_map/pipeline/narrow_lanes.hpp"
+
 namespace relative_map::core {
 
 namespace {
@@ -12,27 +14,30 @@ constexpr Time kLate =
 
 }  // namespace
 
-void RelativeMapPipeline::set_localization(const Localization& link,
+bool RelativeMapPipeline::set_localization(const Localization& link,
                                            const std::optional<Eigen::Isometry3d>& link_from_base) {
   if (localization_ && link.stamp < localization_->input.stamp) {
-    if (localization_->input.stamp - link.stamp < kLate) return;
+    if (localization_->input.stamp - link.stamp < kLate) return false;
     reset();
   }
   localization_ = check_localization(link);
-  if (localization_->refusal) return;
+  if (localization_->refusal) return true;
   if (link_from_base) localization_->input = carry_to_base(localization_->input, *link_from_base);
   const auto state = make_vehicle_state(localization_->input, fresh_chassis(link.stamp));
   const auto* vehicle = std::get_if<VehicleState>(&state);
-  if (!vehicle) return;
+  if (!vehicle) return true;
   poses_.add(*vehicle);
   images_.move(poses_.newest());
   estimator_.move(poses_.newest(), config_->lane_fusion);
   marker_estimator_.move(poses_.newest());
+  return true;
 }
 
 void RelativeMapPipeline::set_lane_markers(const LaneMarkers& markers) {
-  markers_ = markers;
-  images_.add(markers);
+  Checked<LaneMarkers> checked = check_lane_markers(markers);
+  marker_remarks_ = std::move(checked.remarks);
+  markers_ = std::move(checked.input);
+  images_.add(*markers_);
 }
 
 std::optional<Chassis> RelativeMapPipeline::fresh_chassis(Time now) const {
@@ -46,6 +51,7 @@ void RelativeMapPipeline::reset() {
   localization_.reset();
   chassis_.reset();
   markers_.reset();
+  marker_remarks_.clear();
   poses_.clear();
   images_.clear();
   estimator_.reset();
@@ -137,6 +143,7 @@ std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) 
   if (localization_->refusal) return *localization_->refusal;
   add_remarks(localization_->remarks);
   if (chassis_) add_remarks(chassis_->remarks);
+  add_remarks(marker_remarks_);
   return make_vehicle_state(localization_->input, fresh_chassis(now));
 }
 

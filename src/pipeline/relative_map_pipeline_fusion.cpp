@@ -88,6 +88,11 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::lane_of_markers(
       marker_estimator_.centerline(), vehicle.map_from_base.to_local(localized.map_from_base),
       marker_estimator_.seen_to(), fusion.left_half_width.value, fusion.right_half_width.value, vehicle.speed,
       config_->navigation_lane);
+  if (!find_kinks(markers.path.points).empty()) {
+    remarks_.push_back("lane markers: no vehicle could follow them");
+    marker_estimator_.reset();
+    return nothing(std::move(otherwise));
+  }
   const SeenPaint paint{marker_estimator_.left_paint(), marker_estimator_.right_paint(), markers.trusted_from,
                         markers.trusted_to};
   return finish({std::move(markers.path)}, 0, paint, std::move(fusion), vehicle);
@@ -115,11 +120,12 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build_with_fixed_weight(c
       if (const auto why = trust_within_lane(lanes[current], *markers)) {
         remarks_.push_back("lane markers: " + *why);
         markers.reset();
-      } else {
-        fusion = fuse_fixed_weight(*markers, config_->navigation_lane.lane_marker_weight,
-                                   config_->lane_fusion.fade_length, lanes[current]);
+      } else if (auto fused = fuse(*markers, lanes[current])) {
+        fusion = std::move(*fused);
         fusion.marker_age = marker_age();
         keep_room_beside(lanes, current);
+      } else {
+        markers.reset();
       }
     }
     const SeenPaint paint = paint_beside(lanes[current]);
@@ -150,7 +156,19 @@ std::optional<MarkerPath> RelativeMapPipeline::marker_path(const VehicleState& v
   auto made = make_marker_path(*markers_, base_from_sensor, vehicle.speed, config_->map_param,
                                config_->navigation_lane);
   if (const auto* why = std::get_if<std::string>(&made)) return unusable(*why);
+  if (!find_kinks(std::get<MarkerPath>(made).path.points).empty())
+    return unusable("no vehicle could follow them");
   return std::get<MarkerPath>(std::move(made));
+}
+
+std::optional<FusionState> RelativeMapPipeline::fuse(const MarkerPath& markers, LanePath& lane) {
+  const LanePath line = lane;
+  FusionState fusion = fuse_fixed_weight(markers, config_->navigation_lane.lane_marker_weight,
+                                         config_->lane_fusion.fade_length, lane);
+  if (find_kinks(lane.points).empty()) return fusion;
+  remarks_.push_back("lane markers: no vehicle could follow line '" + line.id + "' where they move it");
+  lane = line;
+  return std::nullopt;
 }
 
 }  // namespace relative_map::core

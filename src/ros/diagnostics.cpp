@@ -6,6 +6,8 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
+constexpr double kMaxClockStands = 2.0;  // [s] a clock that is simulated slowly moves more often
+
 unsigned char level_of(core::StatusCode code) {
   // Nothing received yet and the end of a line are states that every drive passes through.
   switch (code) {
@@ -66,7 +68,12 @@ std::string source_name(core::Source source) {
 
 void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticStatusWrapper& status) {
   const core::RelativeMap& map = statistics.last_map;
-  if (statistics.maps == 0) {
+  if (statistics.clock_stands > kMaxClockStands) {
+    status.summaryf(DiagnosticStatus::WARN,
+                    "the clock stands still, since %.0f s: no maps are made until /clock "
+                    "moves on",
+                    statistics.clock_stands);
+  } else if (statistics.maps == 0) {
     status.summary(DiagnosticStatus::WARN, "no map published yet");
   } else if (map.status.code == core::StatusCode::kOk) {
     status.summary(DiagnosticStatus::OK,

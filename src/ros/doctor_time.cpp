@@ -17,6 +17,11 @@ struct Instant {
   ros::Time at, stamp;
 };
 
+/// [s] Exact, and of any size: ros::Duration holds 68 years, and throws where a stamp is scrap.
+double seconds_between(const ros::Time& from, const ros::Time& to) {
+  return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec() - from.toNSec()));
+}
+
 /// An input that has to come in regularly.
 struct Stream {
   std::string name;
@@ -47,8 +52,8 @@ std::vector<Stream> streams(const Observations& seen) {
 /// that has died counts too.
 double rate_of(const std::vector<Instant>& instants, const ros::Time& end) {
   const auto periods = static_cast<double>(instants.size() - 1);
-  const double seconds = (instants.back().at - instants.front().at).toSec();
-  const double silence = (end - instants.back().at).toSec();
+  const double seconds = seconds_between(instants.front().at, instants.back().at);
+  const double silence = seconds_between(instants.back().at, end);
   if (periods * silence <= 2.0 * seconds && seconds > 0.0) return periods / seconds;
   return seconds + silence > 0.0 ? periods / (seconds + silence) : 0.0;
 }
@@ -57,13 +62,13 @@ double rate_of(const std::vector<Instant>& instants, const ros::Time& end) {
 double age_of(const Stream& stream) {
   std::vector<double> ages;
   for (const Instant& instant : stream.instants) {
-    if (!instant.stamp.isZero()) ages.push_back((instant.at - instant.stamp).toSec());
+    if (!instant.stamp.isZero()) ages.push_back(seconds_between(instant.stamp, instant.at));
   }
   return median(ages);
 }
 
 bool clock_stands(const Observations& seen) {
-  return (seen.end - seen.begin).toSec() < 0.05 * seen.listened;
+  return seconds_between(seen.begin, seen.end) < 0.05 * seen.listened;
 }
 
 std::string on_clocks(const Observations& seen) {
@@ -106,9 +111,9 @@ Findings inputs_do_not_pause(const Evidence& evidence) {
   if (clock_stands(evidence.seen)) return {};
   Findings findings;
   for (const Stream& stream : streams(evidence.seen)) {
-    double longest = (evidence.seen.end - stream.instants.back().at).toSec();
+    double longest = seconds_between(stream.instants.back().at, evidence.seen.end);
     for (std::size_t i = 1; i < stream.instants.size(); ++i) {
-      longest = std::max(longest, (stream.instants[i].at - stream.instants[i - 1].at).toSec());
+      longest = std::max(longest, seconds_between(stream.instants[i - 1].at, stream.instants[i].at));
     }
     if (longest <= stream.max_age) continue;
     findings.push_back(

@@ -50,15 +50,17 @@ void MapEngine::set_config(const core::PipelineConfig& config) {
 }
 
 void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, const ros::Time& received) {
-  localization_ = message;
   const core::Localization localization = to_core(*message, convention_, received);
-  newest_pose_ = localization.stamp;
   const std::string link = link_of(message->child_frame_id, config_->base_frame);
   const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_->base_frame);
+  if (link_from_base) {
+    const bool is_base = link == config_->base_frame;
+    // A late one is dropped: what is passed on with the map must be the pose that the map is for.
+    if (!pipeline_.set_localization(localization, is_base ? std::nullopt : link_from_base)) return;
+  }
+  localization_ = message;
+  newest_pose_ = localization.stamp;
   localization_has_transform_ = link_from_base.has_value();
-  if (!link_from_base) return;
-  const bool is_base = link == config_->base_frame;
-  pipeline_.set_localization(localization, is_base ? std::nullopt : link_from_base);
 }
 
 void MapEngine::on_chassis(const ChassisConstPtr& message, const ros::Time& received) {
@@ -80,7 +82,7 @@ void MapEngine::on_lane_markers(const LaneMarkersConstPtr& message, const ros::T
 
 std::optional<core::Status> MapEngine::localization_fault(const ros::Time& now) const {
   if (!localization_) return std::nullopt;
-  if (*newest_pose_ > to_core(now) + core::from_seconds(config_->max_age.localization)) {
+  if (core::to_seconds(*newest_pose_ - to_core(now)) > config_->max_age.localization) {
     return core::Status{core::StatusCode::kInvalidLocalization,
                         "localization: header.stamp is ahead of the clock"};
   }
@@ -89,8 +91,9 @@ std::optional<core::Status> MapEngine::localization_fault(const ros::Time& now) 
                                                             localization_->child_frame_id + "' to '" +
                                                             config_->base_frame + "'"};
   }
+  if (config_->navigation_lane.lane_source == core::LaneSource::kPerception) return std::nullopt;
   const std::string map_frame = frame_name(localization_->header.frame_id);
-  if (lines_ && lines_->frame_id != map_frame) {
+  if (lines_ && !lines_->lines.empty() && lines_->frame_id != map_frame) {
     return core::Status{core::StatusCode::kFrameMismatch, "navigation is in frame '" + lines_->frame_id +
                                                               "', but localization in '" + map_frame + "'"};
   }

@@ -241,8 +241,8 @@ visualization_msgs::MarkerArray MapMarkers::draw(const MapMsg& map, const core::
     draw_boundary(map, lane.left_boundary, boundaries);
     if (lane.id == map.current_lane_id) array.markers.push_back(draw_centerline(map, lane));
   }
-  // In an empty map it may be of any age.
-  if (!map.hdmap.lane.empty()) {
+  // Paint that was not used may be of any age, and of any shape.
+  if (map.fusion.marker_age >= 0.0) {
     draw_lane_marker(map, map.lane_marker.left_lane_marker, 0, seen);
     draw_lane_marker(map, map.lane_marker.right_lane_marker, 1, seen);
   }

@@ -54,8 +54,15 @@ void MapObserver::note_map(const core::RelativeMap& map, double tick_time, const
   statistics_.remaining_distance = current->remaining_distance;
 }
 
+void MapObserver::note_clock(const ros::Time& now, const ros::WallTime& wall_now) {
+  if (clock_since_ && now == clock_) return;
+  clock_ = now;
+  clock_since_ = wall_now;
+}
+
 MapStatistics MapObserver::statistics(const ros::Time& now, const ros::WallTime& wall_now) const {
   MapStatistics result = statistics_;
+  if (clock_since_ && now == clock_) result.clock_stands = (wall_now - *clock_since_).toSec();
   for (const auto& [topic, input] : inputs_) {
     const auto recent =
         std::count_if(input.arrivals.begin(), input.arrivals.end(),

@@ -89,7 +89,10 @@ RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
 
   diagnostics_.setHardwareID("none");
   diagnostics_.add("relative map", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    summarize(observer_.statistics(ros::Time::now(), ros::WallTime::now()), status);
+    const ros::Time now = ros::Time::now();
+    const ros::WallTime wall_now = ros::WallTime::now();
+    observer_.note_clock(now, wall_now);
+    summarize(observer_.statistics(now, wall_now), status);
   });
   diagnostics_timer_ = nh_.createWallTimer(
       ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });

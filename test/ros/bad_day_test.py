@@ -11,7 +11,7 @@ import unittest
 import rosbag
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from relative_map.msg import Chassis, LaneMarker, LaneMarkers, LocalizationEstimate, MapMsg, MapStatus
 from rosgraph_msgs.msg import Clock
 
@@ -223,12 +223,19 @@ class BadDayTest(unittest.TestCase):
         self.world.navigation.publish(self._good_lines())
         self.assert_well_again('good lines again')
 
+    @staticmethod
+    def _summary(diagnostics):
+        """The newest word about the map."""
+        return [s for d in diagnostics for s in d.status if s.name.endswith('relative map')][-1]
+
     def _stop_the_clock(self):
         seen = []
         subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, seen.append)
-        time.sleep(3.5)
+        time.sleep(4.5)
         subscriber.unregister()
         self.assertGreater(len(seen), 1, 'diagnostics go on while the clock stands')
+        self.assertEqual(self._summary(seen).level, DiagnosticStatus.WARN)
+        self.assertIn('the clock stands still', self._summary(seen).message)
         self.assert_well_again('the clock runs again')
 
     def _check_contract(self):

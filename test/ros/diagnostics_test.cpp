@@ -6,6 +6,8 @@
 
 #include <set>
 
+#include "relative_map/ros/map_observer.hpp"
+
 namespace relative_map {
 namespace {
 
@@ -66,6 +68,39 @@ TEST(Diagnostics, AreInErrorOtherwise) {
 TEST(Diagnostics, NameTheReason) {
   EXPECT_EQ(summary_of(statistics_of(core::StatusCode::kOffRoute, "far away")).message,
             "OFF_ROUTE: far away");
+}
+
+TEST(Diagnostics, WarnOfAClockThatStandsStill) {
+  core::RelativeMap map;
+  map.lanes.emplace_back().id = "lane";
+  MapObserver observer;
+  const ros::WallTime start(1000.0);
+  observer.note_map(map, 0.001, start);
+  const auto after = [&](double seconds, const ros::Time& clock) {
+    const ros::WallTime wall_now = start + ros::WallDuration(seconds);
+    observer.note_clock(clock, wall_now);
+    return summary_of(observer.statistics(clock, wall_now));
+  };
+  const ros::Time stopped(50.0);
+  EXPECT_EQ(after(0.0, stopped).level, DiagnosticStatus::OK);
+  EXPECT_EQ(after(1.0, stopped).level, DiagnosticStatus::OK)
+      << "one look that sees no other time is no alarm";
+  for (const double seconds : {3.0, 4.0}) {
+    const auto status = after(seconds, stopped);
+    EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+    EXPECT_THAT(status.message,
+                HasSubstr("the clock stands still, since " + std::to_string(int(seconds)) + " s"));
+  }
+  EXPECT_EQ(after(5.0, ros::Time(50.1)).level, DiagnosticStatus::OK) << "it runs again";
+  EXPECT_EQ(after(6.0, ros::Time(10.0)).level, DiagnosticStatus::OK)
+      << "a bag that starts again moves it, too";
+}
+
+TEST(Diagnostics, WarnOfAClockThatHasNeverCome) {
+  MapObserver observer;
+  observer.note_clock(ros::Time(), ros::WallTime(1000.0));
+  EXPECT_THAT(summary_of(observer.statistics(ros::Time(), ros::WallTime(1005.0))).message,
+              HasSubstr("the clock stands still"));
 }
 
 TEST(Diagnostics, TellTheNumbersBehindIt) {

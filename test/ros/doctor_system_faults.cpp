@@ -166,6 +166,15 @@ std::vector<Fault> time_faults() {
        "/chassis: header.stamp lies 3.0 s in the future",
        "synchronize the clocks",
        {}},
+      {"stamps_are_not_ahead",
+       "StampsThatAreScrap",  // farther away than ros::Duration reaches
+       [](Observations& seen) {
+         std::uint32_t seconds = 4200000000;
+         change(seen.chassis, [&](Chassis& chassis) { chassis.header.stamp = ros::Time(seconds++, 0); });
+       },
+       "/chassis: header.stamp lies 2500000",
+       "synchronize the clocks",
+       {}},
       {"stamps_rise",
        "StampsRepeat",
        [](Observations& seen) {

@@ -96,6 +96,34 @@ TEST_F(MapEngineFrames, NavigationInAnotherMapFrameIsNamed) {
   EXPECT_THAT(core::check_map(to_core(map), {}), IsEmpty());
 }
 
+TEST_F(MapEngineFrames, NavigationWithoutAFrameIsNamed) {
+  NavigationInfo lines = test::three_lanes(drive.pose);
+  lines.header.frame_id.clear();
+  engine.set_lines(lines);
+  const MapMsg map = map_of_base_link();
+  EXPECT_EQ(map.status.code, MapStatus::FRAME_MISMATCH);
+  EXPECT_THAT(map.status.message, HasSubstr("navigation is in frame ''"));
+}
+
+TEST_F(MapEngineFrames, OfNavigationWithoutLinesTheFrameDoesNotMatter) {
+  engine.set_lines(NavigationInfo());
+  EXPECT_EQ(map_of_base_link().status.code, MapStatus::NO_NAVIGATION_LINE);
+}
+
+TEST(MapEnginePerception, TakesNoCountOfTheFrameOfLines) {
+  NodeConfig config;
+  config.pipeline.navigation_lane.lane_source = core::LaneSource::kPerception;
+  Engine engine(config);
+  NavigationInfo lines = test::three_lanes(Pose2());
+  lines.header.frame_id = "another_map";
+  engine.set_lines(lines);
+  engine->on_lane_markers(shared(test::lane_markers(kStamp)), kStamp);
+  engine.drive_to(Pose2(), kStamp);
+  const MapMsg map = engine.map_at(kStamp);
+  EXPECT_EQ(map.status.code, MapStatus::OK) << map.status.message;
+  EXPECT_EQ(map.fusion.source, FusionState::LANE_MARKERS);
+}
+
 TEST_F(MapEngineFrames, ALeadingSlashMakesNoOtherMapFrame) {
   LocalizationEstimate message = localization_of_link(drive, Eigen::Isometry3d::Identity(), "base_link");
   message.header.frame_id = "/map";

@@ -96,6 +96,25 @@ TEST_F(MapEngineOnItsWay, DoesNotMapAPoseTwice) {
   EXPECT_NE(engine->tick(after(0.3)), nullptr);
 }
 
+TEST_F(MapEngineOnItsWay, PassesThePoseOnThatTheMapIsForWhereALaterOneComesLate) {
+  const Pose2 further(Point2(24.0, 0.1), 0.0);
+  engine.drive_to(further, after(0.4));
+  engine.drive_to(Pose2(Point2(23.0, 2.0), 0.0), after(0.3));  // overtaken on its way
+  const MapMsg map = engine.map_at(after(0.4));
+  EXPECT_EQ(map.header.stamp, after(0.4));
+  EXPECT_EQ(map.localization, localization(further, after(0.4)));
+  engine.drive_to(Pose2(Point2(23.5, 2.0), 0.0), after(0.35));
+  EXPECT_EQ(engine->tick(after(0.5)), nullptr) << "no pose gets two maps";
+}
+
+TEST_F(MapEngineOnItsWay, PutsUpWithAnyMaximumAge) {
+  core::PipelineConfig config = engine->config();
+  config.max_age.localization = 1e12;  // [s] more than fits into a time
+  engine->set_config(config);
+  engine.drive_to(kOnMiddleLane, after(3600.0));
+  EXPECT_EQ(engine.map_at(after(0.1)).status.code, MapStatus::OK);
+}
+
 TEST_F(MapEngineOnItsWay, EmptiesTheMapWhenThePoseIsStaleAndGoesOnSayingSo) {
   EXPECT_EQ(engine->tick(after(0.5)), nullptr);
   for (const double seconds : {0.6, 0.7, 0.8}) {

@@ -228,6 +228,15 @@ TEST(MapMarkers, PaintThatIsNotSeenIsNotDrawn) {
   EXPECT_THAT(in_namespace(draw(map_with(markers)), "lane_markers"), IsEmpty());
 }
 
+TEST(MapMarkers, PaintThatIsNotUsedIsNotDrawn) {
+  EXPECT_THAT(in_namespace(draw(map_with(test::lane_markers(kStamp - ros::Duration(2.0)))), "lane_markers"),
+              IsEmpty())
+      << "too old";
+  EXPECT_THAT(in_namespace(draw(map_with(test::lane_markers(kStamp, test::kLaneWidth))), "lane_markers"),
+              IsEmpty())
+      << "another lane's";
+}
+
 TEST(MapMarkers, TheFootprintIsTheVehicles) {
   core::Footprint footprint;
   footprint.half_width = 1.1;

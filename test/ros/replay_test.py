@@ -105,6 +105,17 @@ class Replay(ReplayTest):
         self.replay()
         self.assertEqual(list(self.maps()), tick_times())
 
+    def test_years_without_input_get_no_maps(self):
+        gap = rospy.Duration(2000000000)  # 63 years: a clock that was set while the bag was recorded
+        self.record(entries=list(drive()) + [('/chassis', messages.chassis(START + gap), START + gap)])
+        run = self.replay()
+        times = list(self.maps())
+        self.assertEqual(times[:TICKS], tick_times())
+        self.assertAlmostEqual((times[-1] - START).to_sec(), gap.to_sec(), delta=0.1)
+        self.assertLess(len(times), TICKS + 10 * 60 + 3, 'maps of a minute, and of the message after it')
+        self.assertGreater(len(times), TICKS + 10 * 60 - 3)
+        self.assertIn('no input for 1999999998 s', run.errors)
+
     def test_help(self):
         run = self.replay('--help')
         self.assertIn('usage: rosrun relative_map replay IN.bag OUT.bag [--config FILE] [--urdf FILE]', run.output)

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "relative_map/pipeline/navigation_lines.hpp"
-#include "support/lines.hpp"
+#include "support/vehicles.hpp"
 
 // How laps are recognised and stitched.
 namespace relative_map::core {
@@ -161,6 +161,79 @@ TEST(ClosedLines, GetGeometryOfTheirOwnPastTheSeam) {
   const NavigationLine& line = prepared->lines.at(0);
   EXPECT_NEAR(line.points.front().theta, kPi / 2.0, 1e-9);
   EXPECT_NEAR(line.points.back().theta, kPi / 2.0 - 2.0 * kPi / 190.0, 1e-9);
+}
+
+/// [1/m] the greatest change of curvature from one vertex to the next, round the lap.
+double roughest_step(const NavigationLine& line) {
+  double roughest = 0.0;
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    const double step = line.points[(i + 1) % line.points.size()].kappa - line.points[i].kappa;
+    roughest = std::max(roughest, std::abs(step));
+  }
+  return roughest;
+}
+
+TEST(ClosedLines, AnyClosingErrorUpToALanesHalfWidthIsSmooth) {
+  for (double error = -1.75; error <= 1.75; error += 0.25) {
+    const NavigationLine line = prepare(drifting_lap(error));
+    expect_even_steps(line, 0.75);
+    EXPECT_EQ(line.points.size(), 800u) << "no point is missing or doubled";
+    expect_no_kink(line, 0.015);
+    EXPECT_LT(roughest_step(line), 0.002 * std::abs(error) + 1e-9) << "closing error " << error << " m";
+  }
+  EXPECT_FALSE(prepare(drifting_lap(1.8)).closed()) << "the ends do not meet within a half width";
+}
+
+TEST(ClosedLines, AClosingErrorAlongTheLapIsAGapOrAnOverlapOfVertices) {
+  for (double along = -1.2; along <= 1.7; along += 0.2) {  // short of its start, or past it
+    const NavigationLine line = prepare(arc(Pose2(), 1.0 / 60.0, 2.0 * kPi * 60.0 + along, 0.5));
+    ASSERT_TRUE(line.closed()) << along;
+    EXPECT_NEAR(line.length, 2.0 * kPi * 60.0, 0.01);
+    expect_no_kink(line, 0.04);  // over the longest step, of 1.7 m and one spacing
+    for (const PathPoint& point : line.points) EXPECT_NEAR(point.kappa, 1.0 / 60.0, 1e-6);
+  }
+}
+
+Polyline joined(std::initializer_list<Polyline> pieces) {
+  Polyline points;
+  for (const Polyline& piece : pieces) points.insert(points.end(), piece.begin(), piece.end());
+  return points;
+}
+
+TEST(ClosedLines, HairpinsAreNotClosed) {
+  for (const double radius : {0.5, 0.8, 3.0, 6.0}) {
+    for (const double leg : {2.0, 10.0, 40.0, 150.0}) {
+      const Polyline hairpin = joined({straight(Pose2(), leg, 0.4),
+                                       arc(Pose2(Point2(leg, 0.0), 0.0), 1.0 / radius, kPi * radius, 0.4),
+                                       straight(Pose2(Point2(leg, 2.0 * radius), kPi), leg, 0.4)});
+      EXPECT_FALSE(prepare(hairpin).closed()) << radius << " m radius, legs of " << leg << " m";
+    }
+  }
+}
+
+TEST(ClosedLines, LassosAreNotClosed) {
+  // Out, once round, and back on the way out to where it began; and the same without the way back.
+  for (const double radius : {5.0, 15.0, 40.0}) {
+    for (const double rope : {3.0, 20.0, 100.0}) {
+      const Polyline out = straight(Pose2(), rope, 0.4);
+      const Polyline round = arc(Pose2(Point2(rope, 0.0), 0.0), 1.0 / radius, 2.0 * kPi * radius, 0.4);
+      const Polyline back = straight(Pose2(Point2(rope - 0.4, 0.0), kPi), rope - 0.4, 0.4);
+      const std::string words = std::to_string(rope) + " m to a circle of " + std::to_string(radius) + " m";
+      EXPECT_FALSE(test::prepared(joined({out, round, back})).closed()) << words << " and back";
+      // From 3 m on the side of a wide circle it is a lap that runs past its start.
+      if (rope > 3.0) EXPECT_FALSE(test::prepared(joined({out, round})).closed()) << words;
+    }
+  }
+}
+
+TEST(ClosedLines, ShortLinesOfAnyShapeAreNotClosed) {
+  for (const double length : {0.5, 2.0, 10.0, 25.0}) {
+    for (const double turns : {0.0, 0.5, 0.9, 1.0, 1.02, 2.0}) {
+      const double kappa = 2.0 * kPi * turns / length;
+      EXPECT_FALSE(prepare(arc(Pose2(), kappa, length, length / 40.0)).closed())
+          << length << " m, round " << turns << " times: no vehicle drives so tight a lap";
+    }
+  }
 }
 
 }  // namespace

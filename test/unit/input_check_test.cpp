@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "support/lines.hpp"
+#include "support/markers.hpp"
 
 namespace relative_map::core {
 namespace {
@@ -94,6 +95,28 @@ TEST(ChassisCheck, IgnoresASpeedThatNoCarDrives) {
   const auto checked = check_chassis(chassis);
   EXPECT_TRUE(std::isnan(checked.input.speed));
   EXPECT_THAT(checked.remarks, ElementsAre("chassis: speed_mps is 1000: ignored"));
+}
+
+TEST(LaneMarkerCheck, DoesWithoutAMarkerThatHasANumberWhichIsNotFinite) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto spoilt = [](double LaneMarker::*field, double value) {
+    LaneMarkers markers = test::lane_about({0.2});
+    markers.right.*field = value;
+    return check_lane_markers(markers);
+  };
+  const auto checked = spoilt(&LaneMarker::quality, kInfinity);
+  EXPECT_EQ(checked.input.right.quality, 0.0);
+  EXPECT_EQ(checked.input.left.quality, 0.9) << "the other one stays";
+  EXPECT_THAT(checked.remarks, ElementsAre("lane markers: right_lane_marker.quality is inf: not used"));
+  EXPECT_THAT(spoilt(&LaneMarker::view_range, -kInfinity).remarks,
+              ElementsAre("lane markers: right_lane_marker.view_range is -inf: not used"));
+  EXPECT_THAT(spoilt(&LaneMarker::longitude_start, test::kNaN).remarks,
+              ElementsAre("lane markers: right_lane_marker.longitude_start is nan: not used"));
+  LaneMarkers markers = test::lane_about({0.2});
+  markers.left.cubic.c2 = test::kNaN;
+  EXPECT_THAT(check_lane_markers(markers).remarks,
+              ElementsAre("lane markers: left_lane_marker.c2_curvature is nan: not used"));
+  EXPECT_THAT(check_lane_markers(test::lane_about({0.2})).remarks, IsEmpty());
 }
 
 TEST(ChassisCheck, LeavesReverseAlone) {

@@ -5,6 +5,8 @@
 
 #include "support/lanes.hpp"
 
+#include "relative_map/pipeline/narrow_lanes.hpp"
+
 namespace relative_map::core {
 namespace {
 
@@ -269,6 +271,22 @@ TEST(NarrowLanes, AreFoundBetweenSparseVertices) {
       EXPECT_LE(kept.points.back().position.x(), 58.0);
     }
   }
+}
+
+TEST(NarrowLanes, AreFoundWhereTheyOverlapOnAShortStretch) {
+  // The one ends 0.2 m past the start of the other; a narrow vehicle would be let between them.
+  std::vector<LanePath> lanes = {straight_lane("ahead", 0.0, 1, 10.0, 60.0),
+                                 straight_lane("here", 0.0, 0, -2.0, 10.2, 0.2)};
+  EXPECT_EQ(drop_narrow_lanes(lanes, 0.08).size(), 1u);
+  EXPECT_EQ(ids_of(lanes), std::vector<std::string>({"here"}));
+}
+
+TEST(Borders, OfLanesThatChangeSidesAreNotShared) {
+  // Round a U-turn of coarse vertices, the one that was left is right.
+  const Polyline uturn = {{-2.0, 0.0}, {20.0, 0.0}, {22.0, 2.0}, {22.0, 18.0}, {20.0, 20.0}, {-2.0, 20.0}};
+  Polyline beside = uturn;
+  for (Point2& point : beside) point += Point2(0.0, -3.5);
+  EXPECT_FALSE(find_borders({lane("left", uturn), lane("right", beside)}, kMaxHalfWidth).left_is_shared[1]);
 }
 
 }  // namespace

@@ -207,6 +207,20 @@ TEST(Tracker, KeepsItsPassWhereTheLineComesBackCloseBy) {
   }
 }
 
+TEST(Tracker, KnowsTheWayThereFromTheWayBackUpToTheTurn) {
+  for (const double spacing : {1.0, 50.0}) {
+    Polyline points = straight(Pose2(), 50.0, spacing);
+    const Polyline back = straight(Pose2(Point2(50.0 - spacing, 0.0), kPi), 50.0 - spacing, spacing);
+    points.insert(points.end(), back.begin(), back.end());
+    const NavigationLine line = prepared(points);
+    for (const double x : {5.3, 30.4, 49.8}) {
+      EXPECT_NEAR(OnLine(line).at(Pose2(Point2(x, 0.1), 0.0)).s, x, 1e-9) << "there";
+      EXPECT_NEAR(OnLine(line).at(Pose2(Point2(x, 0.1), kPi)).s, 100.0 - x, 1e-9) << "and back";
+      EXPECT_NEAR(OnLine(line).at(Pose2(Point2(x, 0.1), kPi)).heading_offset, 0.0, 1e-9);
+    }
+  }
+}
+
 TEST(Tracker, StaysPutWhereTheVehicleStandsAndItsPoseIsNoisy) {
   OnLine on(prepared_figure_eight());
   const double before = on.at(figure_eight(-0.01), 0.0).s;

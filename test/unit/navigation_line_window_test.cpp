@@ -55,6 +55,46 @@ TEST(Window, HoldsTheLinesOwnVerticesSeenFromTheVehicle) {
   }
 }
 
+/// 50 m out along x, and back on the same points.
+NavigationLine there_and_back() {
+  Polyline points = straight(Pose2(), 50.0, 1.0);
+  const Polyline back = straight(Pose2(Point2(49.0, 0.0), kPi), 49.0, 1.0);
+  points.insert(points.end(), back.begin(), back.end());
+  return prepared(points);
+}
+
+TEST(Window, EndsWhereTheLineTurnsBack) {
+  const LanePath out = window_at(there_and_back(), Pose2(Point2(30.0, 0.0), 0.0), 250.0);
+  EXPECT_NEAR(out.points.back().position.x(), 20.0, 1e-9);
+  EXPECT_NEAR(out.remaining, 20.0, 1e-9) << "what can be driven";
+  for (const PathPoint& point : out.points) {
+    EXPECT_NEAR(point.theta, 0.0, 1e-12) << "of the way out alone";
+    EXPECT_NEAR(point.kappa, 0.0, 1e-12);
+  }
+}
+
+TEST(Window, BeginsWhereTheLineTurnsBack) {
+  const LanePath back = window_at(there_and_back(), Pose2(Point2(48.9, 0.0), kPi), 250.0);
+  EXPECT_NEAR(back.points.front().position.x(), -1.1, 1e-9);
+  EXPECT_NEAR(back.points.back().position.x(), 48.9, 1e-9);
+  EXPECT_NEAR(back.s_at_vehicle, 1.1, 1e-9);
+  EXPECT_NEAR(back.points.front().theta, 0.0, 1e-9);
+}
+
+TEST(Window, BesideATurnBackHasTheSideThatTheVehicleIsOn) {
+  for (const double heading : {0.0, kPi}) {
+    const LanePath path = window_at(there_and_back(), Pose2(Point2(49.8, 0.0), heading), 250.0);
+    EXPECT_NEAR(path.points.front().position.x(), heading == 0.0 ? -2.8 : -0.2, 1e-9);
+    EXPECT_NEAR(path.points.back().position.x(), heading == 0.0 ? 0.2 : 49.8, 1e-9);
+  }
+}
+
+TEST(Window, EndsAtATurnBackThatLiesJustPastItsLength) {
+  const LanePath path = window_at(there_and_back(), Pose2(Point2(30.0, 0.0), 0.0), 22.5);
+  EXPECT_NEAR(path.points.back().position.x(), 20.0, 1e-9);
+  EXPECT_NEAR(path.points.back().theta, 0.0, 1e-12);
+}
+
 TEST(Window, NeverReachesBeyondAnOpenLine) {
   const NavigationLine line = prepared(straight(Pose2(), 100.0, 1.0));
   const LanePath at_start = window_at(line, Pose2(Point2(0.2, 0.0), 0.0), 250.0);

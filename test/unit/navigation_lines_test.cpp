@@ -47,8 +47,31 @@ TEST(NavigationLines, WithCoordinatesThatAreNotFiniteAreLeftOutWithThePoint) {
   for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
     RecordedLine line = recording(straight(Pose2(), 50.0, 1.0));
     line.points[7].y = bad;
-    EXPECT_THAT(fault_of(line), HasSubstr("point 7 has a coordinate that is not finite"));
+    EXPECT_THAT(fault_of(line), HasSubstr(std::isnan(bad) ? "y of point 7 is nan" : "y of point 7 is inf"));
   }
+}
+
+TEST(NavigationLines, WithCoordinatesThatAreNotOnEarthAreLeftOut) {
+  RecordedLine line = recording(straight(Pose2(), 50.0, 1.0));
+  line.points[7].x = 1e30;
+  EXPECT_THAT(fault_of(line), HasSubstr("x of point 7 is 1e+30 m"));
+}
+
+TEST(NavigationLines, ThatTurnBackOnTheSpotSayWhere) {
+  Polyline points = straight(Pose2(), 50.0, 1.0);
+  const Polyline back = straight(Pose2(Point2(49.0, 0.0), kPi), 49.0, 1.0);
+  points.insert(points.end(), back.begin(), back.end());
+  const auto prepared = prepare({recording(points, "there and back")});
+  ASSERT_EQ(prepared->lines.size(), 1u);
+  EXPECT_EQ(prepared->lines[0].kinks, std::vector<std::size_t>({50}));
+  ASSERT_EQ(prepared->faults.size(), 1u);
+  EXPECT_THAT(prepared->faults[0], HasSubstr("line 'there and back' turns back at s = 50 m"));
+}
+
+TEST(NavigationLines, WithCornersOfARightAngleDoNotTurnBack) {
+  const auto prepared = prepare({recording({{0.0, 0.0}, {60.0, 0.0}, {60.0, 60.0}, {0.0, 60.0}})});
+  EXPECT_TRUE(prepared->lines.at(0).kinks.empty());
+  EXPECT_TRUE(prepared->faults.empty());
 }
 
 TEST(NavigationLines, OneBadLineDoesNotTakeTheOthersWithIt) {
@@ -193,6 +216,23 @@ TEST(NavigationLines, GetTheGeometryOfTheirPositionsWhereTheirOwnIsWrong) {
   RecordedLine mirrored = smoothed_arc();
   for (LinePoint& point : mirrored.points) point.kappa = -point.kappa;
   expect_recomputed(mirrored);
+}
+
+TEST(NavigationLines, GetTheGeometryOfTheirPositionsWhereTheirOwnDoesNotFitLongSegments) {
+  // Each number is near enough by itself, but 8 m on, curvature and heading are apart.
+  RecordedLine line = recording(test::arc(Pose2(kUtm, 3.0), 0.02, 120.0, 8.0));
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    line.points[i].theta = normalize_angle(3.0 + 0.16 * static_cast<double>(i) + 0.0045);
+    line.points[i].kappa = 0.02 - 0.0015 * (i % 2 == 0 ? 1.0 : -1.0);
+    line.points[i].dkappa = 0.0;
+  }
+  for (const PathPoint& point : prepare({line})->lines.at(0).points) EXPECT_NEAR(point.kappa, 0.02, 1e-6);
+}
+
+TEST(NavigationLines, GetTheGeometryOfTheirPositionsWhereTheirOwnCurvatureDoesNotAddUpOnTheLastMetres) {
+  RecordedLine line = recording(straight(Pose2(kUtm, 3.0), 4.0, 0.5));
+  for (LinePoint& point : line.points) point.theta = 3.0, point.kappa = 0.004, point.dkappa = 0.0;
+  for (const PathPoint& point : prepare({line})->lines.at(0).points) EXPECT_NEAR(point.kappa, 0.0, 1e-6);
 }
 
 TEST(NavigationLines, GetTheRatesOfTheirPositionsWhereTheirOwnAreMissing) {

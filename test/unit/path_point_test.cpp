@@ -282,5 +282,21 @@ TEST(ChordLength, IsTheSumOfTheChords) {
   EXPECT_EQ(chord_length({Point2(0.0, 0.0), Point2(3.0, 4.0), Point2(3.0, 5.0)}), 6.0);
 }
 
+TEST(Kinks, AreTurnsOfMoreThanARightAngle) {
+  EXPECT_EQ(find_kinks(test::path_through({{0, 0}, {2, 0}, {2, 2}, {2.5, 1}, {3, 3}, {5, 3}})),
+            std::vector<std::size_t>({2, 3}));
+  const PathPoints triangle = test::path_through({{0, 0}, {4, 0}, {2, 3}});
+  EXPECT_EQ(find_kinks(triangle), std::vector<std::size_t>({1}));
+  EXPECT_EQ(find_kinks(triangle, Ends::kClosed), std::vector<std::size_t>({0, 1, 2})) << "at the seam, too";
+}
+
+TEST(WidestGap, IsThatOfPointsBesideTheOtherLine) {
+  const Polyline line = {{-5, 9}, {0, 0}, {1, 0.5}, {2, -0.7}, {3, 0}, {9, 9}};
+  const Gap gap = widest_gap(line, {{0, 0}, {3, 0}});
+  EXPECT_NEAR(gap.width, 0.7, 1e-12);
+  EXPECT_EQ(gap.place, Point2(2, -0.7));
+  EXPECT_EQ(widest_gap({{-5, 9}, {9, 9}}, {{0, 0}, {3, 0}}).width, 0.0) << "neither is beside it";
+}
+
 }  // namespace
 }  // namespace relative_map::core

@@ -124,6 +124,29 @@ TEST(PipelineStatus, MarkersFromBeforeAnyPoseAreDoneWithout) {
   EXPECT_TRUE(scene.remarked("no pose is known for their stamp"));
 }
 
+TEST(PipelineStatus, LocalizationThatComesLateIsDropped) {
+  Scene scene(three_straight_lines());
+  scene.at(kOnTheRoad);
+  const auto set = [&](double seconds_ago) {
+    return scene.pipeline().set_localization(
+        localization_at(Pose2(Point2(90.0, 0.0), 0.0), scene.now() - from_seconds(seconds_ago)));
+  };
+  EXPECT_FALSE(set(0.2));
+  EXPECT_EQ(scene.pipeline().pose_stamp(), scene.now());
+  EXPECT_TRUE(set(2.0)) << "time was set back";
+  EXPECT_EQ(scene.pipeline().pose_stamp(), scene.now() - from_seconds(2.0));
+}
+
+TEST(PipelineStatus, MarkersWithNumbersThatAreNotFiniteAreDoneWithoutByName) {
+  PipelineConfig config;
+  config.navigation_lane.lane_source = LaneSource::kPerception;
+  Scene scene({}, config);
+  LaneMarkers markers = lane_about({0.0});
+  markers.left.quality = markers.right.quality = std::numeric_limits<double>::infinity();
+  scene.see(markers);
+  expect_empty(scene.at(kOnTheRoad), StatusCode::kMarkersUnusable, "left_lane_marker.quality is inf");
+}
+
 TEST(PipelineStatus, AfterAResetOnlyTheLinesAreLeft) {
   Scene scene(three_straight_lines());
   scene.see(lane_about({0.5}));

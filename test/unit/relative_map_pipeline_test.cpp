@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "support/scene.hpp"
 
 // Maps from good inputs; those that fail are in pipeline_status_test.cpp.
@@ -177,6 +179,38 @@ TEST(Pipeline, OnPerceptionTakesNoCountOfLines) {
   EXPECT_NEAR(map.lanes[0].path.front().position.y(), 0.3, 1e-12);
 }
 
+/// Near the road and far from it, with priorities that are all above 0 and mostly used again.
+std::vector<RecordedLine> ten_thousand_lines() {
+  std::vector<RecordedLine> lines;
+  for (int i = 0; i < 10000; ++i) {
+    const double y = i % 10 == 0 ? 3.5 * (i / 10 % 8) - 12.0 : 50.0 * i;  // a tenth of them on eight lanes
+    lines.push_back(recording(straight(Pose2(Point2(0.0, y), 0.0), 300.0, 3.0), "line " + std::to_string(i),
+                              static_cast<std::uint32_t>(7 + i % 5)));
+  }
+  return lines;
+}
+
+TEST(Pipeline, PutsUpWithTenThousandLines) {
+  Scene scene(ten_thousand_lines());
+  const RelativeMap map = scene.at(Pose2(Point2(100.0, 0.3), 0.0));
+  ASSERT_EQ(map.status.code, StatusCode::kOk) << map.status.message;
+  EXPECT_EQ(map.lanes.size(), 8u);
+  std::size_t best = 0;
+  for (const Lane& lane : map.lanes) best += lane.priority == 0 ? 1 : 0;
+  EXPECT_EQ(best, 1u);
+  EXPECT_LE(scene.pipeline().remarks().size(), 24u) << "a summary, not a sentence for each line";
+  EXPECT_TRUE(scene.remarked("more lines are out of reach"));
+  EXPECT_TRUE(scene.remarked("lines are in reach: only the best 16 are used"));
+}
+
+TEST(Pipeline, TakesNoLongerForTenThousandLinesThanATickLasts) {
+  Scene scene(ten_thousand_lines());
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 10; ++i) scene.at(Pose2(Point2(100.0 + i, 0.3), 0.0));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_LT(seconds / 10.0, 0.05) << "half a period of 10 Hz";
+}
+
 TEST(Pipeline, MergesLinesThatAreTheSameAndSaysSo) {
   std::vector<RecordedLine> lines = three_straight_lines();
   lines.push_back(lines[1]);
@@ -224,6 +258,33 @@ TEST(Pipeline, DrivesRoundALapForEver) {
     EXPECT_GT(map.lanes[0].length, 250.0);
     EXPECT_NEAR(map.lanes[0].remaining_distance, 190.0, 0.1);
   }
+}
+
+TEST(Pipeline, CrossesTheSeamOfALapSmoothly) {
+  // The lap drifts outwards by 1.2 m: what a recording by GPS may close with. Three laps of it.
+  const double radius = 190.0 / (2.0 * kPi), error = 1.2;
+  Polyline lap;
+  for (int i = 0; i < 380; ++i) {
+    const double t = i / 380.0;
+    lap.push_back((radius + error * t) * Point2(std::cos(2.0 * kPi * t), std::sin(2.0 * kPi * t)));
+  }
+  Scene scene({recording(lap)});
+  const Pose2 start(Point2(radius, 0.0), kPi / 2.0);
+  double steepest = 0.0;
+  for (double driven = 0.0; driven < 3.0 * 190.0; driven += 1.3) {
+    const RelativeMap map = scene.at(test::along_arc(start, 1.0 / radius, driven));
+    ASSERT_EQ(map.status.code, StatusCode::kOk) << "after " << driven << " m: " << map.status.message;
+    const PathPoints& path = map.lanes[0].path;
+    EXPECT_GT(path.back().s, 250.0);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      EXPECT_GT(path[i].s - path[i - 1].s, 0.2) << "no point is doubled";
+      EXPECT_LT(path[i].s - path[i - 1].s, 0.8) << "no point is missing";
+      EXPECT_NEAR(path[i].kappa, 1.0 / radius, 0.025) << "after " << driven << " m, at s = " << path[i].s;
+      EXPECT_LT(std::abs(angle_difference(path[i].theta, path[i - 1].theta)), 0.035);
+      steepest = std::max(steepest, std::abs(path[i].kappa - path[i - 1].kappa));
+    }
+  }
+  EXPECT_LT(steepest, 0.003);
 }
 
 TEST(Pipeline, TakesNewLinesFromOneTickToTheNext) {

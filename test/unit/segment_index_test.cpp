@@ -59,6 +59,9 @@ TEST(SegmentIndex, FindsEveryPassAsBruteForceDoes) {
   for (const Ends ends : {Ends::kOpen, Ends::kClosed}) {
     const PathPoints path = random_path(random, 300);
     const SegmentIndex index(path, ends);
+    const auto along = [&](std::size_t segment) -> Point2 {
+      return path[(segment + 1) % path.size()].position - path[segment].position;
+    };
     for (int i = 0; i < 300; ++i) {
       const Point2 point(coordinate(random), coordinate(random));
       const std::vector<Foot> feet = feet_by_brute_force(path, ends, point);
@@ -69,7 +72,14 @@ TEST(SegmentIndex, FindsEveryPassAsBruteForceDoes) {
         const double here = feet[k].squared_distance;
         const double before = feet[(k + feet.size() - 1) % feet.size()].squared_distance;
         const double after = feet[(k + 1) % feet.size()].squared_distance;
-        if (here <= 225.0 && (first || here < before) && (last || here <= after)) expected.push_back(k);
+        const auto turns_back = [&](std::size_t a, std::size_t b) {  // and neither foot is its tip
+          return feet[a].fraction < 1.0 && feet[b].fraction > 0.0 && along(a).dot(along(b)) < 0.0;
+        };
+        const std::size_t next = (k + 1) % feet.size(), previous = (k + feet.size() - 1) % feet.size();
+        if (here <= 225.0 && (first || here < before || turns_back(previous, k)) &&
+            (last || here <= after || turns_back(k, next))) {
+          expected.push_back(k);
+        }
       }
       std::vector<std::size_t> found;
       for (const Foot& foot : index.passes(path, point, 15.0)) found.push_back(foot.segment);
@@ -115,6 +125,14 @@ TEST(SegmentIndex, CountsOnePassAcrossTheSeamOfALap) {
   const std::vector<Foot> passes = index.passes(path, Point2(31.0, 0.0), 5.0);
   ASSERT_EQ(passes.size(), 1u) << "the seam's vertex is shared by the last segment and the first";
   EXPECT_NEAR(passes[0].squared_distance, 1.0, 1e-12);
+}
+
+TEST(SegmentIndex, PassesOfAPathThatTurnsBackAreTwo) {
+  const PathPoints path = test::path_through({{0, 0}, {10, 0}, {0, 0.2}});
+  const std::vector<Foot> passes = SegmentIndex(path, Ends::kOpen).passes(path, {9.0, -0.1}, 5.0);
+  ASSERT_EQ(passes.size(), 2u);
+  EXPECT_EQ(passes[0].segment, 0u);
+  EXPECT_EQ(passes[1].segment, 1u);
 }
 
 }  // namespace

@@ -32,6 +32,10 @@ void compute_arc_length(PathPoints& points);
 /// `lap_length` [m] is the chord length of a closed path, its closing segment included.
 void compute_geometry(PathPoints& points, Ends ends = Ends::kOpen, double lap_length = 0.0);
 
+/// The vertices at which a path turns by more than a right angle, rising. There the circle through three
+/// points is none that it could follow.
+std::vector<std::size_t> find_kinks(const PathPoints& points, Ends ends = Ends::kOpen);
+
 /// The point at arc length s [m], linear between vertices, held at the ends. `hint` is a vertex to start
 /// the search from, and comes back as the vertex at or before s: walking along a path costs O(1) a step.
 PathPoint interpolate(const PathPoints& points, double s, std::size_t& hint);
@@ -121,5 +125,13 @@ inline Foot PolylineWalker::next(const Point2& point, std::size_t steps) {
 }
 
 double chord_length(const Polyline& points);
+
+/// [m] from the points of `line` to the other one, where that runs beside them: the longest such distance,
+/// and where it is.
+struct Gap {
+  double width = 0.0;
+  Point2 place = Point2::Zero();
+};
+Gap widest_gap(const Polyline& line, const Polyline& other);
 
 }  // namespace relative_map::core

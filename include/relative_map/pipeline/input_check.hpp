@@ -26,4 +26,7 @@ Checked<Localization> check_localization(const Localization& link);
 /// A speed that no car drives is not given (NaN).
 Checked<Chassis> check_chassis(const Chassis& chassis);
 
+/// A marker with a number that is not finite is not seen: its quality becomes 0.
+Checked<LaneMarkers> check_lane_markers(const LaneMarkers& markers);
+
 }  // namespace relative_map::core

@@ -14,12 +14,6 @@ struct LaneBorders {
   std::vector<bool> left_is_shared;   ///< with the lane before, which is then a neighbour
 };
 
-/// Takes out lanes, or the rest of a lane, beside which a better one runs so near that the vehicle does not
-/// fit between the borders. Returns a sentence for each.
-/// `lanes` are ordered left to right; `half_width` [m] is the vehicle's; the lane `kept` counts as the best.
-std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width,
-                                           const std::string& kept = "");
-
 /// Lanes up to twice `max_half_width` [m] apart share the line midway between them, or the paint where it was
 /// seen beside one of them; farther apart each keeps its own half width, with a gap between them. `lanes` are
 /// ordered left to right, none too narrow.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,10 +22,12 @@ struct NavigationLine {
   SegmentIndex index;
   Eigen::AlignedBox2d bounds;  ///< around all points
   Ends ends = Ends::kOpen;
-  double length = 0.0;   ///< [m] a closed line's stitch included
-  bool thinned = false;  ///< spacing varies, as resampling by curvature leaves it
+  double length = 0.0;             ///< [m] a closed line's stitch included
+  bool thinned = false;            ///< spacing varies, as resampling by curvature leaves it
+  std::vector<std::size_t> kinks;  ///< vertices at which it turns back, rising: no lane leads past one
 
   bool closed() const { return ends == Ends::kClosed; }
+  bool is_kink(std::size_t vertex) const { return std::binary_search(kinks.begin(), kinks.end(), vertex); }
 };
 
 /// All lines of one navigation message; immutable, and shared between threads as such.
@@ -40,7 +43,8 @@ struct IntakeParam {
 };
 
 /// Checks, cleans, indexes and stitches recorded lines. A pure function: run it on any thread.
-/// A line with a coordinate that is not finite or without two distinct points is left out, with a fault.
+/// A line with a coordinate that is not finite or not on Earth, or without two distinct points, is left out,
+/// with a fault.
 /// s comes from the positions; a line's own theta, kappa and dkappa are kept where they agree with them.
 std::shared_ptr<const NavigationLines> prepare_navigation_lines(const NavigationInfo& info,
                                                                 const IntakeParam& param);

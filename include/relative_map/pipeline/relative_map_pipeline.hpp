@@ -30,8 +30,8 @@ class RelativeMapPipeline {
     lanes_in_reach_.set_lines(std::move(lines));
   }
   /// Of the link whose place in the vehicle `link_from_base` gives; none: of the body frame itself.
-  /// A message a little older than the newest one is late and dropped; one much older sets time back.
-  void set_localization(const Localization& link,
+  /// A message a little older than the newest one is late and dropped: false; one much older sets time back.
+  bool set_localization(const Localization& link,
                         const std::optional<Eigen::Isometry3d>& link_from_base = std::nullopt);
   void set_chassis(const Chassis& chassis) { chassis_ = check_chassis(chassis); }
   void set_lane_markers(const LaneMarkers& markers);
@@ -60,6 +60,8 @@ class RelativeMapPipeline {
   std::variant<std::vector<TrackedLine>, Status> lines_in_reach(const VehicleState& vehicle);
   std::vector<LanePath> cut_lanes(const std::vector<TrackedLine>& lines, const VehicleState& vehicle);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
+  /// None, and the lane stays as it is: what the markers make of it can't be driven.
+  std::optional<FusionState> fuse(const MarkerPath& markers, LanePath& lane);
   void keep_room_beside(std::vector<LanePath>& lanes, std::size_t& current);
   std::variant<RelativeMap, Status> lane_of_markers(const std::vector<ImageQueue::Image>& images,
                                                     const VehicleState& localized, Time now,
@@ -74,6 +76,7 @@ class RelativeMapPipeline {
   std::optional<Checked<Localization>> localization_;  ///< of the body frame
   std::optional<Checked<Chassis>> chassis_;
   std::optional<LaneMarkers> markers_;
+  std::vector<std::string> marker_remarks_;  ///< on their numbers
   PoseBuffer poses_;
   ImageQueue images_;
   LaneEstimator estimator_;

@@ -25,6 +25,7 @@ struct MapStatistics {
   std::size_t maps = 0;
   std::map<std::string, std::size_t> empty_maps;  ///< by reason
   std::map<std::string, InputStatistics> inputs;  ///< by topic
+  double clock_stands = 0.0;                      ///< [s] of the wall's clock that ROS time has not moved
 };
 
 /// Name of a status code as in MapStatus.

@@ -18,6 +18,8 @@ class MapObserver {
   void note_input(const std::string& topic, const ros::Time& stamp, const ros::WallTime& arrival);
   /// `tick_time` [s] is what the map took to make and publish.
   void note_map(const core::RelativeMap& map, double tick_time, const ros::WallTime& now);
+  /// ROS time as it goes by, or does not.
+  void note_clock(const ros::Time& now, const ros::WallTime& wall_now);
   /// Rates and ages are those at the time of the call.
   MapStatistics statistics(const ros::Time& now, const ros::WallTime& wall_now) const;
 
@@ -32,6 +34,8 @@ class MapObserver {
   MapStatistics statistics_;
   std::map<std::string, Input> inputs_;
   std::optional<ros::WallTime> differs_since_;  ///< the status from the settled one
+  ros::Time clock_;
+  std::optional<ros::WallTime> clock_since_;  ///< it has been at `clock_`
 };
 
 }  // namespace relative_map

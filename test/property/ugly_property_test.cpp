@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "relative_map/pipeline/map_check.hpp"
+#include "ugly_drive.hpp"
+
+// No input, however ugly, gets a map out that breaks the contract: map_check never has anything to replace.
+namespace relative_map::core {
+namespace {
+
+constexpr std::uint64_t kDrives = 4000;
+constexpr int kSteps = 12;
+
+TEST(UglyInputs, NeverMakeAMapThatBreaksTheContract) {
+  std::map<StatusCode, int> statuses;
+  std::map<Source, int> sources;
+  std::size_t several_lanes = 0;
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    test::UglyDrive drive(seed);
+    RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>());
+    std::optional<std::uint32_t> previous;
+    for (int step = 0; step < kSteps; ++step) {
+      drive.step(pipeline);
+      const RelativeMap map = pipeline.tick(drive.now());
+      for (const Violation& violation : check_map(map, {"base_link", previous})) {
+        ADD_FAILURE() << "seed " << seed << ", step " << step << ", source "
+                      << static_cast<int>(map.fusion.source) << ": " << violation.row << ": "
+                      << violation.what;
+      }
+      previous = map.sequence_num;
+      ++statuses[map.status.code];
+      ++sources[map.fusion.source];
+      several_lanes += map.lanes.size() > 1;
+    }
+  }
+  // They have been everywhere.
+  EXPECT_GT(statuses[StatusCode::kOk], 10000);
+  for (const StatusCode code :
+       {StatusCode::kStaleLocalization, StatusCode::kInvalidLocalization, StatusCode::kNoNavigationLine,
+        StatusCode::kOffRoute, StatusCode::kLineEnd, StatusCode::kMarkersUnusable}) {
+    EXPECT_GT(statuses[code], 100) << "status " << static_cast<int>(code);
+  }
+  for (const Source source : {Source::kFused, Source::kNavigationLine, Source::kLaneMarkers}) {
+    EXPECT_GT(sources[source], 300) << "source " << static_cast<int>(source);
+  }
+  EXPECT_GT(several_lanes, 3000u);
+}
+
+}  // namespace
+}  // namespace relative_map::core
