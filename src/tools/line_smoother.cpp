@@ -18,6 +18,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 using Triplet = Eigen::Triplet<double>;
 
 constexpr double kReferenceLength = 2.0;  // [m] to leave out noise, and keep a corner of 5 m radius to 2 cm
+constexpr double kUndecided = 1e-14;      // keeps what nothing else decides
 constexpr double kFixed = 1e9;            // weight of what must not move
 constexpr int kMaxRounds = 7;
 constexpr double kSettled = 0.01;        // [m] the reference has moved no farther
@@ -158,7 +159,7 @@ class Round {
     const auto add = [&](int a, int b, double value) {
       if (!is_fixed(a) && !is_fixed(b) && a >= b) triplets.emplace_back(a, b, value);
     };
-    for (int i = 0; i < count_; ++i) triplets.emplace_back(i, i, is_fixed(i) ? 1.0 : 0.0);
+    for (int i = 0; i < count_; ++i) triplets.emplace_back(i, i, is_fixed(i) ? 1.0 : kUndecided);
     for (int i = 0; i < number_of_segments(); ++i) {  // the places that rows ask for
       triplets.emplace_back(std::max(i, (i + 1) % count_), std::min(i, (i + 1) % count_), 0.0);
     }
