@@ -51,9 +51,9 @@ int run_publish(const Words& words, const Remappings& remappings) {
                         : core::resample_by_curvature(in, core::default_curvature_spacing()));
     }
     file.line.priority = static_cast<std::uint32_t>(priorities[i]);
-    print_written(files[i], file.line);
     info.lines.push_back(std::move(file.line));
   }
+  for (std::size_t i = 0; i < files.size(); ++i) print_written(files[i], info.lines[i]);
   info.frame_id = header.frame_id.empty() ? "map" : header.frame_id;
 
   ros::init(remappings, "navigator");
