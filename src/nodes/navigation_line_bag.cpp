@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <stdexcept>
 
@@ -137,16 +138,18 @@ void write_path_bag(const std::string& path, const std::string& topic, const cor
   }
   const std::string temporary = core::temporary_name(path);
   const ros::Time now(ros::WallTime::now().toSec());
+  auto bag = std::make_unique<rosbag::Bag>();
   try {
-    rosbag::Bag bag(temporary, rosbag::bagmode::Write);
-    bag.write(name, now, message);
+    bag->open(temporary, rosbag::bagmode::Write);
+    bag->write(name, now, message);
     if (!core::is_empty(file.header)) {
       std_msgs::String header;
       header.data = core::to_json(file.header);
-      bag.write(name + kHeaderSuffix, now, header);
+      bag->write(name + kHeaderSuffix, now, header);
     }
-    bag.close();
+    bag->close();
   } catch (const std::exception& fault) {
+    static_cast<void>(bag.release());  // on a full disk its destructor writes once more, and throws
     std::remove(temporary.c_str());
     throw std::runtime_error("cannot write " + path + ": " + fault.what());
   }

@@ -130,7 +130,8 @@ void measure(SmoothedLine& result, const Deviation& deviation, const SmootherPar
   if (result.greatest_deviation > param.bound + kTolerance) {
     fault << "the bound of " << param.bound << " m cannot be held " << place(result.deviation_s)
           << ": a line that the vehicle can drive lies " << result.greatest_deviation
-          << " m beside the recording there";
+          << " m beside the recording there, so that a bound of "
+          << 0.01 * std::ceil(100.0 * result.greatest_deviation + 1.0) << " m would do";
   } else if (result.greatest_kappa > param.max_curvature) {
     fault << "the bound of " << param.bound << " m cannot be held " << place(result.kappa_s)
           << ": within it, the line would have to bend by " << result.greatest_kappa

@@ -2,6 +2,7 @@
 """Bad input to `navigation_line`: one sentence, an exit code that is not 0, and no file harmed."""
 
 import os
+import subprocess
 
 import rospy
 import rostest
@@ -117,6 +118,19 @@ class NavigationLineFaults(ToolTest):
         for form in ('smoothed', 'one-line', 'csv'):
             self.expect_fault('convert', 'good.smoothed', '/dev/full', '--to', form,
                               says=('cannot write /dev/full', 'No space left on device'))
+
+    def test_a_full_disk_of_its_own(self):
+        os.mkdir(self.path('disk'))
+        mount = ['mount', '-t', 'tmpfs', '-o', 'size=64k', 'tmpfs', self.path('disk')]
+        if subprocess.run(mount, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode != 0:
+            self.skipTest('mounting a disk is not allowed here')
+        self.addCleanup(subprocess.run, ['umount', self.path('disk')])
+        self.write('disk/old.smoothed', 'precious\n')
+        self.write('long.smoothed', smoothed(straight(2000.0)))
+        for name in ('old.smoothed', 'new.csv', 'new.bag'):
+            self.expect_fault('convert', 'long.smoothed', 'disk/' + name, says=('cannot write disk/' + name,))
+            self.assertEqual(os.listdir(self.path('disk')), ['old.smoothed'])
+        self.assertEqual(self.read('disk/old.smoothed'), 'precious\n')
 
     def test_a_bound_that_cannot_be_held(self):
         points = straight(100.0)
