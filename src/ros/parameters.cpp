@@ -18,7 +18,7 @@ void flatten_into(ParameterSet& set, const std::string& path, XmlRpc::XmlRpcValu
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeStruct:
       for (auto& [key, child] : value) {
-        if (path.empty() && key == kReconfigureNamespace) continue;
+        if (path.empty() && (key == kReconfigureNamespace || key == kLinesParameter)) continue;
         flatten_into(set, path.empty() ? key : path + "/" + key, child);
       }
       break;
@@ -54,6 +54,7 @@ void flatten_into(ParameterSet& set, const std::string& path, const YAML::Node& 
   if (node.IsMap()) {
     for (const auto& entry : node) {
       const std::string key = entry.first.as<std::string>();
+      if (path.empty() && key == kLinesParameter) continue;
       flatten_into(set, path.empty() ? key : path + "/" + key, entry.second);
     }
   } else if (node.IsScalar()) {
