@@ -70,6 +70,7 @@ void LaneEstimator::give_up(const VehicleState& localized, const std::string& wh
 }
 
 void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& param) {
+  watch_.max_offset = param.max_offset;
   const bool forgotten = last_paint_ && to_seconds(localized.stamp - *last_paint_) > kForgetTime;
   // Without paint there is nothing to tell bias from place by.
   if (!last_ || !informed() || forgotten || has_jumped(*last_, localized) ||

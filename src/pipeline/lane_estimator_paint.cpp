@@ -23,9 +23,9 @@ constexpr double kSameSurprise = 0.5;     // [m] between offsets that say the sa
 constexpr double kDoubtTime = 2.5;        // [s] in which none of the paint counted: the estimate is doubted,
 constexpr double kLostTime = 5.0;         // [s] ... and given up
 constexpr double kUnseen = 1e4;           // [m^2] variance of a sample that has no line beside it
-constexpr double kShapeReach = 30.0;  // [m] ahead, where frozen paint is compared with the line, and by how
-const Eigen::Vector3d kShapeError(0.3, 0.5,
-                                  0.9);  // [m] much the line may move beside it: here, half way, there
+constexpr double kShapeReach = 30.0;  // [m] ahead, where a change of the line's direction is looked for ...
+const Eigen::Vector2d kShapeChange(0.03,
+                                   0.05);  // [rad] ... here and there: paint can't stay the same beside it
 
 }  // namespace
 
@@ -71,6 +71,7 @@ bool LaneEstimator::fits(const Measurement& measurement) const {
   if (measurement.squared_distance > kGate) return false;
   // The mean by itself, too: five numbers hide a shift of all of them.
   const double offset = std::abs(measurement.mean_offset());
+  if (!informed() && offset > watch_.max_offset) return false;
   return offset < kMaxSurprise && offset < kOffsetGate * mean_stddev(measurement);
 }
 
@@ -179,20 +180,21 @@ bool LaneEstimator::may_begin(const std::array<SeenSide, 2>& seen, Time stamp) {
 /// Whether paint says the same numbers as before, while the line has moved beside the vehicle.
 bool LaneEstimator::is_frozen(const SeenSides& sides, const NavigationLine& line,
                               const LineProjection& projection) {
-  const Point2 position = last_->map_from_base.position() - line.origin;
+  // By headings, since localization's position drifts and jumps.
+  const Pose2& pose = last_->map_from_base;
+  const Point2 position = pose.position() - line.origin;
   LineWalker walker(line, projection.nearest_vertex);
-  Eigen::Vector3d shape;
-  for (int i = 0; i < 3; ++i) {
-    const BesideLine beside =
-        walker.beside(position + 0.5 * i * kShapeReach * last_->map_from_base.forward());
-    shape[i] = beside.lateral;
+  Eigen::Vector2d shape;
+  for (int i = 0; i < 2; ++i) {
+    const Point2 normal = walker.beside(position + i * kShapeReach * pose.forward()).normal;
+    shape[i] = std::atan2(-pose.forward().dot(normal), -cross(pose.forward(), normal));
   }
   if (!sides.unchanged || line.id != watch_.line_id) {
     watch_.line_id = line.id;
     watch_.line_shape = shape;
     watch_.frozen = false;
   }
-  if (((shape - watch_.line_shape).cwiseAbs().array() > kShapeError.array()).any()) watch_.frozen = true;
+  if (((shape - watch_.line_shape).cwiseAbs().array() > kShapeChange.array()).any()) watch_.frozen = true;
   return watch_.frozen;
 }
 

@@ -89,10 +89,11 @@ class LaneEstimator {
   struct Watch {
     std::optional<Time> begun;  ///< since when one side alone has been seen
     Time last_image{};          ///< of it
+    double max_offset = 0.0;    ///< [m] LaneFusionParam
     bool frozen = false;        ///< paint has not changed, though the line has
     std::string line_id;
-    Eigen::Vector3d line_shape =
-        Eigen::Vector3d::Zero();  ///< [m] of that line ahead, when paint last changed
+    Eigen::Vector2d line_shape =
+        Eigen::Vector2d::Zero();  ///< [rad] that line's directions, when paint last changed
   };
 
   void start(const VehicleState& localized);
