@@ -18,7 +18,8 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
     ros-noetic-{message-runtime,nav-msgs,nodelet,pluginlib,rosbag-storage,roscpp,std-msgs,std-srvs,tf2,tf2-msgs}
     ros-noetic-{tf2-ros,urdf,visualization-msgs,robot-state-publisher,rosbash,roslaunch,rosnode,rosservice,rostopic})
   rviz_packages=(ros-noetic-rviz)
-  test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} clang-format catkin-lint)
+  test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} python3-matplotlib clang-format
+    catkin-lint)
 else
   build_packages=(g++ make cmake catkin libboost-dev libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev
     libdiagnostic-msgs-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev
@@ -29,7 +30,7 @@ else
     ros-robot-state-publisher python3-{roslaunch,rosnode,rosservice,rostopic})
   rviz_packages=(rviz)
   test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-nodelet python3-rosbag
-    python3-rostest librostest-dev clang-format catkin-lint)
+    python3-rostest librostest-dev python3-matplotlib clang-format catkin-lint)
 fi
 picture_packages=(xvfb imagemagick libgl1-mesa-dri)
 
