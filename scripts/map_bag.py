@@ -6,10 +6,11 @@ import numpy
 import rosbag
 from relative_map.msg import FusionState, MapMsg, MapStatus
 
+from map_lanes import beside_origin, carried, carry, lanes_of, points_of
+
 LANE_STEP = 10.0  # [m] of driving between the maps whose lanes are kept
 LANE_REACH = 40.0  # [m] ahead of the vehicle up to which they are
 JUMP = 20.0  # [m] from map to map that is no driving
-SEARCHED = 25.0  # [m] of a curve, from its start: the vehicle is beside one of these points
 
 SOURCES = {FusionState.NONE: "no map", FusionState.FUSED: "line + markers", FusionState.NAVIGATION_LINE: "line alone",
            FusionState.LANE_MARKERS: "markers alone"}
@@ -44,81 +45,6 @@ class Drive:
         since = (self.stamp[order] - stamp) * 1e-9
         turned = numpy.unwrap(self.heading[order])
         return tuple(numpy.interp(0.0, since, values) for values in (self.x[order], self.y[order], turned))
-
-
-class Lane:
-    """One lane of a map, in the frame that its points were carried to."""
-
-    def __init__(self, left, right, center, priority, current, paint):
-        self.left, self.right, self.center = left, right, center
-        self.priority, self.current = priority, current
-        self.paint = paint  # of (left, right): [(points, type)]
-
-
-def points_of(curve):
-    points = [(point.x, point.y) for segment in curve.segment for point in segment.line_segment.point]
-    return numpy.array(points).reshape(-1, 2)
-
-
-def arc_lengths(points):
-    return numpy.concatenate(([0.0], numpy.cumsum(numpy.hypot(*numpy.diff(points, axis=0).T))))
-
-
-def part(points, start, end):
-    """The points between two arc lengths, both ends interpolated."""
-    s = arc_lengths(points)
-    start, end = max(start, 0.0), min(end, s[-1])
-    if end <= start:
-        return numpy.empty((0, 2))
-    wanted = numpy.concatenate(([start], s[(s > start) & (s < end)], [end]))
-    return numpy.column_stack([numpy.interp(wanted, s, points[:, axis]) for axis in (0, 1)])
-
-
-def beside_origin(points):
-    """Where along a curve the vehicle, at the origin, is, and how far [m] to its left: (s, l).
-    On a lap the curve may come by again farther on."""
-    s = arc_lengths(points)
-    starts = points[:-1][s[:-1] <= SEARCHED]
-    along = numpy.diff(points, axis=0)[:len(starts)]
-    squares = numpy.maximum((along ** 2).sum(axis=1), 1e-12)
-    feet = starts + along * numpy.clip(-(starts * along).sum(axis=1) / squares, 0.0, 1.0)[:, None]
-    i = int(numpy.argmin(numpy.hypot(*feet.T)))
-    left = (starts[i, 0] * along[i, 1] - starts[i, 1] * along[i, 0]) / numpy.sqrt(squares[i])
-    return s[i] + numpy.hypot(*(feet[i] - starts[i])), left
-
-
-def carried(points, pose):
-    x, y, heading = pose
-    c, s = math.cos(heading), math.sin(heading)
-    return points @ numpy.array([[c, s], [-s, c]]) + (x, y)
-
-
-def lanes_of(message, behind=math.inf, ahead=math.inf):
-    """The lanes of a map in the body frame, so far [m] along them from the vehicle."""
-    lanes = []
-    priorities = {path.lane_id: path.navigation_path.path_priority for path in message.navigation_path}
-    for lane in message.hdmap.lane:
-        curves, paints = [], []
-        for curve, kinds in ((lane.left_boundary.curve, lane.left_boundary.boundary_type),
-                             (lane.right_boundary.curve, lane.right_boundary.boundary_type),
-                             (lane.central_curve, [])):
-            points = points_of(curve)
-            if len(points) < 2 or not numpy.isfinite(points).all():
-                break
-            here = beside_origin(points)[0]
-            curves.append(part(points, here - behind, here + ahead))
-            ends = [kind.s for kind in kinds[1:]] + [math.inf]
-            paints.append([(part(points, max(kind.s, here - behind), min(end, here + ahead)),
-                            kind.types[0] if kind.types else 0) for kind, end in zip(kinds, ends)])
-        if len(curves) == 3:
-            lanes.append(Lane(*curves, priorities.get(lane.id, 99), lane.id == message.current_lane_id, paints[:2]))
-    return lanes
-
-
-def carry(lanes, pose):
-    return [Lane(carried(lane.left, pose), carried(lane.right, pose), carried(lane.center, pose), lane.priority,
-                 lane.current, [[(carried(points, pose), kind) for points, kind in side] for side in lane.paint])
-            for lane in lanes]
 
 
 def heading_of(pose, convention):
@@ -206,8 +132,7 @@ class Reader:
                   "lanes": len(message.hdmap.lane), "x": x, "y": y, "heading": heading,
                   "from_middle": lateral_distance(message), "marker_range": fusion.marker_range,
                   "marker_age": fusion.marker_age if fusion.marker_age >= 0.0 else math.nan,
-                  "map_age": (time.to_nsec() - stamp) * 1e-9, "tick_time": self.tick_time,
-                  "reason": message.status.message}
+                  "map_age": (time.to_nsec() - stamp) * 1e-9, "tick_time": self.tick_time}
         for name in ESTIMATES:
             sigma = getattr(fusion, name + "_stddev")
             column[name] = getattr(fusion, name) if message.hdmap.lane else math.nan

@@ -12,16 +12,16 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from map_bag import JUMP, SOURCES, STATUS_NAMES
 
 BLUE, GREEN, PURPLE, GREY = "#0072B2", "#009E73", "#CC79A7", "#8A8A8A"
-ORANGE, VERMILLION, YELLOW, BLACK = "#E69F00", "#D55E00", "#F0E442", "#202020"
+ORANGE, VERMILLION, YELLOW, SKY, BLACK = "#E69F00", "#D55E00", "#F0E442", "#56B4E9", "#202020"
 PRIORITY_COLORS = (BLUE, GREEN, PURPLE, GREY)  # of 0, 1, 2, and all others
-SOURCE_COLORS = (VERMILLION, BLUE, ORANGE, PURPLE)  # none, line + markers, line alone, markers alone
+SOURCE_COLORS = (VERMILLION, BLACK, ORANGE, SKY)  # none, line + markers, line alone, markers alone
 FAINT, STRONG = 0.22, 0.60  # fills of the other lanes, and of the current one
 # Line colour and dashes of each type of paint; white is drawn in black rims.
-PAINT = {1: ("#F0E442", (3, 3)), 2: ("white", (3, 3)), 3: ("#F0E442", None), 4: ("white", None),
-         5: ("#F0E442", None), 6: (VERMILLION, None)}
+PAINT = {1: (YELLOW, (3, 3)), 2: ("white", (3, 3)), 3: (YELLOW, None), 4: ("white", None), 5: (YELLOW, None),
+         6: (VERMILLION, None)}
 pyplot.rcParams["axes.formatter.useoffset"] = False  # 1.75 stays readable
 ZOOM = (80.0, 32.0)  # [m] width and height of a close view
-AHEAD, BEHIND, SIDE = 110.0, 10.0, 20.0  # [m] of a single map
+AHEAD, BEHIND, SIDE = 110.0, 10.0, 14.0  # [m] of a single map
 
 
 def save(figure, path):
@@ -50,11 +50,13 @@ def fill_of(lane):
 
 
 def draw_lanes(axis, lanes, scale=1.0):
-    """`scale`: of line widths."""
+    """`scale`: of line widths; 0: no lines."""
     lanes = [lane for lane in lanes if len(lane.left) > 1 and len(lane.right) > 1]
     axis.add_collection(PolyCollection([numpy.concatenate((lane.left, lane.right[::-1])) for lane in lanes],
                                        facecolors=[fill_of(lane) for lane in lanes], linewidths=0, zorder=1))
     strokes = {}
+    if scale == 0.0:
+        return
     for points, kind in (stretch for lane in lanes for side in lane.paint for stretch in side):
         if len(points) > 1:
             strokes.setdefault(kind, []).append(points)
@@ -116,8 +118,9 @@ def bird_view(drive, title, path):
     figure = pyplot.figure(figsize=(13.0, height + 4.0), constrained_layout=True)
     grid = figure.add_gridspec(3, 3, height_ratios=(height + 0.6, 2.2, 0.6))
     axis = figure.add_subplot(grid[0, :])
-    draw_lanes(axis, lanes, scale=0.3)
-    draw_way(axis, drive, 1.8)
+    # On a long way the lanes are so narrow that their paint would cover them.
+    draw_lanes(axis, lanes, scale=0.5 if high[0] - low[0] < 250.0 else 0.0)
+    draw_way(axis, drive, 1.4)
     for index, sign in zip(numpy.flatnonzero(known)[[0, -1]], "os"):
         axis.plot(drive.x[index], drive.y[index], sign, color=BLACK, markersize=8, zorder=8)
     axis.set_xlim(low[0], high[0])
@@ -164,9 +167,10 @@ def with_band(axis, drive, name, color, label, factor=1.0):
 def draw_source(axis, drive):
     kinds = numpy.where(drive.driven, numpy.minimum(drive.source, 3), 0)
     used = sorted(set(kinds))
+    ends = numpy.append(drive.seconds[1:], drive.seconds[-1] + 0.1)
     for row, kind in enumerate(used):
-        times = drive.seconds[kinds == kind]
-        axis.plot(times, numpy.full(len(times), row), "|", color=SOURCE_COLORS[kind], markersize=11)
+        spans = [(start, min(end - start, 0.5)) for start, end in zip(drive.seconds[kinds == kind], ends[kinds == kind])]
+        axis.broken_barh(spans, (row - 0.3, 0.6), color=SOURCE_COLORS[kind], linewidth=0.3)
     reasons = ", ".join(sorted({STATUS_NAMES.get(code, str(code)) for code in drive.code[~drive.driven]}))
     axis.set_yticks(range(len(used)))
     axis.set_yticklabels([SOURCES[kind] for kind in used])
@@ -234,7 +238,6 @@ def curves(drive, title, path):
         if axis.get_legend_handles_labels()[0]:
             axis.legend(loc="upper right", fontsize=8, ncol=4, framealpha=0.85)
     axes[-1].set_xlabel("time since the bag's first map [s]")
-    figure.align_ylabels(axes)
     axes[-1].set_xlim(0.0, max(drive.seconds[-1], 0.1))
     save(figure, path)
 
@@ -256,7 +259,7 @@ def single_maps(maps, path):
             if lane.current:
                 axis.plot(*lane.center.T, color=BLACK, linewidth=1.0, dashes=(8, 4), zorder=5)
         for points in paint:
-            axis.plot(*points.T, color=ORANGE, linewidth=2.2, zorder=6)
+            axis.plot(*points.T, color=ORANGE, linewidth=1.5, zorder=6)
         axis.plot([0.0], [0.0], marker=">", color=BLACK, markersize=11, zorder=7)
         axis.set_xlim(-BEHIND, AHEAD)
         axis.set_ylim(right, left)
@@ -270,6 +273,6 @@ def single_maps(maps, path):
                 Line2D([], [], color=BLACK, linewidth=1.0, dashes=(8, 4), label="centerline"),
                 Line2D([], [], color="#707070", linewidth=0.8, label="boundary without paint")]
     if any(paint for _, _, paint in maps):
-        handles.append(Line2D([], [], color=ORANGE, linewidth=2.2, label="lane markers as seen"))
+        handles.append(Line2D([], [], color=ORANGE, linewidth=1.5, label="lane markers as seen"))
     figure.legend(handles=handles, loc="lower center", ncol=4, frameon=False, fontsize=9)
     save(figure, path)
