@@ -20,7 +20,8 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
     ros-noetic-{tf2-msgs,tf2-ros,topic-tools,urdf,visualization-msgs,robot-state-publisher,rosbash,roslaunch,rosnode}
     ros-noetic-{rosservice,rostopic})
   rviz_packages=(ros-noetic-rviz)
-  test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} clang-format catkin-lint)
+  test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} python3-matplotlib clang-format
+    catkin-lint)
 else
   build_packages=(g++ make cmake pkg-config catkin libboost-dev libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev
     libgeographiclib-dev libtinyxml2-dev
@@ -33,7 +34,7 @@ else
     ros-robot-state-publisher python3-{roslaunch,rosnode,rosservice,rostopic})
   rviz_packages=(rviz)
   test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-nodelet python3-rosbag
-    python3-rostest librostest-dev clang-format catkin-lint)
+    python3-rostest librostest-dev python3-matplotlib clang-format catkin-lint)
 fi
 picture_packages=(xvfb imagemagick libgl1-mesa-dri)
 

@@ -65,6 +65,7 @@ RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
       config_(load_config(private_nh)),
       transform_listener_(transforms_),
       engine_(config_, link_transforms(transforms_)),
+      raw_line_(config_.orientation_convention, link_transforms(transforms_)),
       intake_config_(config_.pipeline),
       diagnostics_(nh, private_nh, private_nh.getNamespace()),
       intake_spinner_(1, &intake_queue_) {
@@ -227,7 +228,9 @@ void RelativeMapNode::on_timer(const ros::TimerEvent&) {
 
 void RelativeMapNode::publish_views(const MapMsg& map) {
   if (markers_publisher_.getNumSubscribers() > 0) {
-    markers_publisher_.publish(markers_.draw(map, config_.pipeline.footprint));
+    const double max_distance = engine_.config().navigation_lane.max_distance_to_navigation_line;
+    markers_publisher_.publish(markers_.draw(
+        map, config_.pipeline.footprint, raw_line_.beside(map, engine_.navigation_lines(), max_distance)));
   }
   if (centerline_publisher_.getNumSubscribers() > 0) centerline_publisher_.publish(centerline(map));
 }

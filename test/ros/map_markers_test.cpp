@@ -76,8 +76,8 @@ TEST(MapMarkers, StartByDeletingAllThatWasDrawnBefore) {
 
 TEST(MapMarkers, ShowEverythingOfAMap) {
   const MarkerArray array = draw(fused_map());
-  EXPECT_THAT(namespaces(array),
-              ElementsAre("boundaries", "centerline", "footprint", "lane_markers", "lanes", "status"));
+  EXPECT_THAT(namespaces(array), ElementsAre("boundaries", "boundary_rims", "centerline", "footprint",
+                                             "lane_markers", "lanes", "status"));
   EXPECT_EQ(in_namespace(array, "lanes").size(), 3u);
   EXPECT_EQ(in_namespace(array, "lane_markers").size(), 2u);
   EXPECT_EQ(in_namespace(array, "centerline").size(), 1u);

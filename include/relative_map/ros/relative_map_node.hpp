@@ -18,6 +18,7 @@
 #include "relative_map/ros/map_engine.hpp"
 #include "relative_map/ros/map_markers.hpp"
 #include "relative_map/ros/map_observer.hpp"
+#include "relative_map/ros/raw_line.hpp"
 #include "relative_map/ros/throttled_log.hpp"
 
 namespace relative_map {
@@ -57,6 +58,7 @@ class RelativeMapNode {
   tf2_ros::TransformListener transform_listener_;
   MapEngine engine_;
   MapMarkers markers_;
+  RawLine raw_line_;
 
   std::mutex intake_mutex_;  ///< guards the next three
   std::string localization_frame_;

@@ -1,0 +1,81 @@
+"""The lanes of a map message as arrays of points, for plot_maps."""
+import math
+
+import numpy
+
+SEARCHED = 25.0  # [m] of a curve, from its start: the vehicle is beside one of these points
+
+
+class Lane:
+    """One lane of a map, in the frame that its points were carried to."""
+
+    def __init__(self, left, right, center, priority, current, paint):
+        self.left, self.right, self.center = left, right, center
+        self.priority, self.current = priority, current
+        self.paint = paint  # of (left, right): [(points, type)]
+
+
+def points_of(curve):
+    points = [(point.x, point.y) for segment in curve.segment for point in segment.line_segment.point]
+    return numpy.array(points).reshape(-1, 2)
+
+
+def arc_lengths(points):
+    return numpy.concatenate(([0.0], numpy.cumsum(numpy.hypot(*numpy.diff(points, axis=0).T))))
+
+
+def part(points, start, end):
+    """The points between two arc lengths, both ends interpolated."""
+    s = arc_lengths(points)
+    start, end = max(start, 0.0), min(end, s[-1])
+    if end <= start:
+        return numpy.empty((0, 2))
+    wanted = numpy.concatenate(([start], s[(s > start) & (s < end)], [end]))
+    return numpy.column_stack([numpy.interp(wanted, s, points[:, axis]) for axis in (0, 1)])
+
+
+def beside_origin(points):
+    """Where along a curve the vehicle, at the origin, is, and how far [m] to its left: (s, l).
+    On a lap the curve may come by again farther on."""
+    s = arc_lengths(points)
+    starts = points[:-1][s[:-1] <= SEARCHED]
+    along = numpy.diff(points, axis=0)[:len(starts)]
+    squares = numpy.maximum((along ** 2).sum(axis=1), 1e-12)
+    feet = starts + along * numpy.clip(-(starts * along).sum(axis=1) / squares, 0.0, 1.0)[:, None]
+    i = int(numpy.argmin(numpy.hypot(*feet.T)))
+    left = (starts[i, 0] * along[i, 1] - starts[i, 1] * along[i, 0]) / numpy.sqrt(squares[i])
+    return s[i] + numpy.hypot(*(feet[i] - starts[i])), left
+
+
+def carried(points, pose):
+    x, y, heading = pose
+    c, s = math.cos(heading), math.sin(heading)
+    return points @ numpy.array([[c, s], [-s, c]]) + (x, y)
+
+
+def lanes_of(message, behind=math.inf, ahead=math.inf):
+    """The lanes of a map in the body frame, so far [m] along them from the vehicle."""
+    lanes = []
+    priorities = {path.lane_id: path.navigation_path.path_priority for path in message.navigation_path}
+    for lane in message.hdmap.lane:
+        curves, paints = [], []
+        for curve, kinds in ((lane.left_boundary.curve, lane.left_boundary.boundary_type),
+                             (lane.right_boundary.curve, lane.right_boundary.boundary_type),
+                             (lane.central_curve, [])):
+            points = points_of(curve)
+            if len(points) < 2 or not numpy.isfinite(points).all():
+                break
+            here = beside_origin(points)[0]
+            curves.append(part(points, here - behind, here + ahead))
+            ends = [kind.s for kind in kinds[1:]] + [math.inf]
+            paints.append([(part(points, max(kind.s, here - behind), min(end, here + ahead)),
+                            kind.types[0] if kind.types else 0) for kind, end in zip(kinds, ends)])
+        if len(curves) == 3:
+            lanes.append(Lane(*curves, priorities.get(lane.id, 99), lane.id == message.current_lane_id, paints[:2]))
+    return lanes
+
+
+def carry(lanes, pose):
+    return [Lane(carried(lane.left, pose), carried(lane.right, pose), carried(lane.center, pose), lane.priority,
+                 lane.current, [[(carried(points, pose), kind) for points, kind in side] for side in lane.paint])
+            for lane in lanes]
