@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "relative_map/pipeline/half_width_model.hpp"
 
@@ -21,7 +20,8 @@ constexpr double kCurvatureWalk = 2e-4;      // [1/m] by way
 constexpr double kHeadingWalk = 0.002;       // [rad] by time
 constexpr double kSlipWalk = 0.02;           // [m] by time
 constexpr double kLongestGap = 1.0;          // [s] between poses that odometry bridges
-constexpr double kGate = 30.0;               // squared, in standard deviations
+constexpr double kPatience = 1.2;  // [s] of paint that does not fit; outliers last for up to a second
+constexpr double kGate = 30.0;     // squared, in standard deviations
 
 }  // namespace
 
@@ -80,8 +80,24 @@ MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples
 }
 
 std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double half_width, Time stamp) {
-  std::vector<std::string> ignored;
   if (!last_paint_) start(half_width);
+  std::vector<std::string> ignored = correct(sides, stamp);
+  if (last_paint_ == stamp) {
+    refused_since_.reset();
+  } else if (!ignored.empty()) {
+    if (!refused_since_) refused_since_ = stamp;
+    if (to_seconds(stamp - *refused_since_) > kPatience) {  // the vehicle is in another lane, or was astray
+      start(half_width);
+      ignored = correct(sides, stamp);
+      refused_since_.reset();
+    }
+  }
+  if (!filter_.state().allFinite()) reset();
+  return ignored;
+}
+
+std::vector<std::string> MarkerLaneEstimator::correct(const SeenSides& sides, Time stamp) {
+  std::vector<std::string> ignored;
   struct Seen {
     Index side;
     const PaintSamples* paint;
@@ -99,12 +115,9 @@ std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double
   if (seen.size() == 2 && seen[1].distance < seen[0].distance) std::swap(seen[0], seen[1]);
   bool any = false;
   for (Seen& one : seen) {
-    if (any) one.distance = distance_of(one);
+    if (any) one.distance = distance_of(one);  // the surer side has moved the state
     if (one.distance > kGate) {
-      std::ostringstream reason;
-      reason.precision(2);
-      reason << one.name << " is ignored: it is not where this lane's paint is expected";
-      ignored.push_back(reason.str());
+      ignored.push_back(std::string(one.name) + " is ignored: it is not where this lane's paint is expected");
       continue;
     }
     const Measurement m = measure(*one.paint, one.side);
@@ -115,7 +128,6 @@ std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double
     any = true;
   }
   if (any) last_paint_ = stamp;
-  if (!filter_.state().allFinite()) reset();
   return ignored;
 }
 

@@ -42,13 +42,15 @@ class Scene {
   }
 
   /// A tenth of a second later, with the vehicle at `pose`.
-  RelativeMap at(const Pose2& pose, double speed = 10.0) {
+  RelativeMap at(const Pose2& pose, double speed = 10.0, double yaw_rate = 0.0) {
     now_ += step;
     Chassis chassis;
     chassis.stamp = now_;
     chassis.speed = speed;
     pipeline_.set_chassis(chassis);
-    pipeline_.set_localization(localization_at(pose, now_, speed));
+    Localization localization = localization_at(pose, now_, speed);
+    localization.angular_velocity_body.z() = yaw_rate;
+    pipeline_.set_localization(localization);
     return tick();
   }
   /// Seen at the pose and time of the next call of `at`.

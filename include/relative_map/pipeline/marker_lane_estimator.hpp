@@ -41,11 +41,12 @@ class MarkerLaneEstimator {
   };
 
   void start(double half_width);
+  std::vector<std::string> correct(const SeenSides& sides, Time stamp);
   Measurement measure(const PaintSamples& paint, Index side) const;
 
   Filter filter_;
   std::optional<VehicleState> last_;
-  std::optional<Time> last_paint_;
+  std::optional<Time> last_paint_, refused_since_;
   double seen_to_ = 0.0;
   BoundaryType left_paint_ = BoundaryType::kUnknown, right_paint_ = BoundaryType::kUnknown;
 };
