@@ -20,8 +20,13 @@ constexpr double kCurvatureWalk = 2e-4;      // [1/m] by way
 constexpr double kHeadingWalk = 0.002;       // [rad] by time
 constexpr double kSlipWalk = 0.02;           // [m] by time
 constexpr double kLongestGap = 1.0;          // [s] between poses that odometry bridges
-constexpr double kPatience = 1.2;  // [s] of paint that does not fit; outliers last for up to a second
-constexpr double kGate = 30.0;     // squared, in standard deviations
+constexpr double kNothingSeen = 10.0;   // [m] of paint left ahead, below which the vehicle's own way counts
+constexpr double kSlowest = 3.0;        // [m/s] at which it tells anything
+constexpr double kDriverSlope = 0.015;  // [rad] of it from the lane's, by the root of the time [s]
+constexpr double kDriverCurvature = 0.002;  // [1/m] likewise
+constexpr double kPatience = 1.2;     // [s] of paint that does not fit; outliers last for up to a second
+constexpr double kWidthMargin = 1.2;  // a lane so much wider or narrower than the limits is none
+constexpr double kGate = 30.0;        // squared, in standard deviations
 
 }  // namespace
 
@@ -62,6 +67,17 @@ void MarkerLaneEstimator::move(const VehicleState& to) {
   turned[kSlope] = -turn;
   filter_.predict(f, Filter::Covariance::Identity(), turned, q);
   seen_to_ -= d;
+  if (seen_to_ < kNothingSeen && to.speed > kSlowest) follow_driver(to, dt);
+}
+
+/// Where nothing is seen, the driver knows the road: the lane turns as the vehicle does, and runs along with
+/// it.
+void MarkerLaneEstimator::follow_driver(const VehicleState& vehicle, double dt) {
+  Eigen::Matrix<double, 2, kStates> h = h.Zero();
+  h(0, kSlope) = h(1, kCurvature) = 1.0;
+  const Eigen::Vector2d driven(0.0, vehicle.yaw_rate / vehicle.speed);
+  const Eigen::Vector2d noise(kDriverSlope * kDriverSlope, kDriverCurvature * kDriverCurvature);
+  filter_.correct(driven - h * filter_.state(), h, Eigen::Matrix2d((noise / dt).asDiagonal()));
 }
 
 MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples& paint, Index side) const {
@@ -79,7 +95,8 @@ MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples
   return result;
 }
 
-std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double half_width, Time stamp) {
+std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double half_width,
+                                                  const NavigationLaneParam& param, Time stamp) {
   if (!last_paint_) start(half_width);
   std::vector<std::string> ignored = correct(sides, stamp);
   if (last_paint_ == stamp) {
@@ -92,7 +109,11 @@ std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double
       refused_since_.reset();
     }
   }
-  if (!filter_.state().allFinite()) reset();
+  const double mean = 0.5 * (filter_.state()[kLeft] + filter_.state()[kRight]);
+  // Begun with an outlier, a lane may seem to be one that there is not; NaN is none either.
+  if (!(mean < kWidthMargin * param.max_lane_half_width && mean > param.min_lane_half_width / kWidthMargin)) {
+    reset();
+  }
   return ignored;
 }
 

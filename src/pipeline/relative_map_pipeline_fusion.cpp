@@ -74,7 +74,7 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::lane_of_markers(
     const std::vector<ImageQueue::Image>& images, const VehicleState& localized, Time now, Status otherwise) {
   std::vector<std::string> ignored;  // of the newest image
   for (const ImageQueue::Image& image : images) {
-    ignored = marker_estimator_.see(image.sides, default_half_width(), image.stamp);
+    ignored = marker_estimator_.see(image.sides, default_half_width(), config_->navigation_lane, image.stamp);
   }
   for (const std::string& side : ignored) remarks_.push_back("lane markers: " + side);
   const auto last_paint = marker_estimator_.last_paint();

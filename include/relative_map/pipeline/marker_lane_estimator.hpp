@@ -18,7 +18,9 @@ class MarkerLaneEstimator {
  public:
   void move(const VehicleState& localized);
   /// Returns a sentence for each side that was ignored.
-  std::vector<std::string> see(const SeenSides& sides, double half_width, Time stamp);
+  /// `half_width` [m]: what a lane has where nothing was seen yet.
+  std::vector<std::string> see(const SeenSides& sides, double half_width, const NavigationLaneParam& param,
+                               Time stamp);
   void reset() { *this = MarkerLaneEstimator(); }
 
   std::optional<Time> last_paint() const { return last_paint_; }
@@ -41,6 +43,7 @@ class MarkerLaneEstimator {
   };
 
   void start(double half_width);
+  void follow_driver(const VehicleState& vehicle, double dt);
   std::vector<std::string> correct(const SeenSides& sides, Time stamp);
   Measurement measure(const PaintSamples& paint, Index side) const;
 
