@@ -1,18 +1,16 @@
 #include "relative_map/io/navigation_line_file.hpp"
 
-#include <unistd.h>
-
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <locale>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
-#include <system_error>
+
+#include "relative_map/io/whole_file.hpp"
 
 namespace relative_map::core {
 
@@ -23,37 +21,68 @@ using Json = nlohmann::json;
 struct Field {
   const char* key;
   double LinePoint::*value;
-  int decimals;  ///< written
+  int decimals;  ///< written: curvature is a second difference of positions, and needs them all
 };
 
 // x and y first: a reader of the file looks for them.
-constexpr std::array<Field, 7> kFields = {{{"x", &LinePoint::x, 6},
-                                           {"y", &LinePoint::y, 6},
-                                           {"z", &LinePoint::z, 6},
-                                           {"s", &LinePoint::s, 6},
-                                           {"theta", &LinePoint::theta, 9},
-                                           {"kappa", &LinePoint::kappa, 9},
-                                           {"dkappa", &LinePoint::dkappa, 9}}};
+constexpr std::array<Field, 7> kFields = {{{"x", &LinePoint::x, 9},
+                                           {"y", &LinePoint::y, 9},
+                                           {"z", &LinePoint::z, 9},
+                                           {"s", &LinePoint::s, 9},
+                                           {"theta", &LinePoint::theta, 12},
+                                           {"kappa", &LinePoint::kappa, 12},
+                                           {"dkappa", &LinePoint::dkappa, 12}}};
+
+constexpr const char* kBlanks = " \t\r\n\v\f";
 
 bool is_blank(const std::string& text) {
-  return text.find_first_not_of(" \t\r\n\v\f") == std::string::npos;
+  return text.find_first_not_of(kBlanks) == std::string::npos;
 }
 
-/// Throws std::runtime_error with a fault that the caller puts the place in front of.
-Json parse_object(const std::string& text) {
-  Json object;
+/// As an array, which is a document: "{...} {...}" and "{...}, {...}" become "[{...},{...}]".
+std::string as_array(const std::string& text) {
+  std::string array = "[";
+  int depth = 0;
+  bool quoted = false, after_object = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\' && i + 1 < text.size()) array += text[i++];
+      quoted = c != '"';
+    } else if (depth == 0 && c == ',') {
+      continue;  // put in before each object but the first
+    } else if (c == '{') {
+      if (depth++ == 0 && after_object) array += ',';
+    } else if (c == '}') {
+      after_object = --depth == 0;
+    } else if (c == '"') {
+      quoted = true;
+    }
+    array += text[i];
+  }
+  return array + "]";
+}
+
+/// The objects of one line of the file. Throws std::runtime_error with a fault that the caller puts the place
+/// in front of.
+std::vector<Json> parse_objects(const std::string& text) {
+  Json value = Json::parse(text, nullptr, false);
+  if (value.is_discarded()) value = Json::parse(as_array(text), nullptr, false);
   try {
-    object = Json::parse(text);
+    if (value.is_discarded()) value = Json::parse(text);
   } catch (const Json::parse_error& error) {
     throw std::runtime_error("not valid JSON near column " + std::to_string(error.byte));
   } catch (const Json::exception&) {  // a number that no double can hold
     throw std::runtime_error("not valid JSON: a number is out of range");
   }
-  if (!object.is_object()) throw std::runtime_error("not a JSON object");
-  return object;
+  if (value.is_object()) return std::vector<Json>(1, value);
+  const bool array_of_objects = value.is_array() && !value.empty() && value.front().is_object();
+  if (!array_of_objects) throw std::runtime_error("not a JSON object");
+  return std::vector<Json>(value.begin(), value.end());
 }
 
 LinePoint parse_point(const Json& object) {
+  if (!object.is_object()) throw std::runtime_error("not a JSON object");
   LinePoint point;
   for (const Field& field : kFields) {
     const auto found = object.find(field.key);
@@ -74,59 +103,71 @@ void write_point(std::ostream& out, const LinePoint& point) {
     out << separator << '"' << field.key << "\": " << std::setprecision(field.decimals) << value;
     separator = ", ";
   }
-  out << "}\n";
-}
-
-/// Throws std::runtime_error when the disk did not take all of it.
-void write_points(const std::string& path, const RecordedLine& line) {
-  std::ofstream out(path);
-  out.imbue(std::locale::classic());  // JSON has decimal points everywhere
-  out << std::fixed;
-  for (const LinePoint& point : line.points) write_point(out, point);
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + path);
+  out << "}";
 }
 
 }  // namespace
 
-RecordedLine read_navigation_line(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error(path + ": cannot be opened");
-  RecordedLine line;
-  line.name = std::filesystem::path(path).stem().string();
+std::string line_name(const std::string& path) {
+  return std::filesystem::path(path).stem().string();
+}
+
+LineFile read_line_file(const std::string& path) {
+  std::istringstream in(read_whole_file(path));
+  LineFile file;
+  file.line.name = line_name(path);
   bool may_be_header = true;
   std::string text;
   for (std::size_t number = 1; std::getline(in, text); ++number) {
     if (is_blank(text)) continue;
     try {
-      const Json object = parse_object(text);
-      const bool header = may_be_header && !object.contains("x") && !object.contains("y");
-      if (!header) line.points.push_back(parse_point(object));
+      for (const Json& object : parse_objects(text)) {
+        const bool header =
+            may_be_header && object.is_object() && !object.contains("x") && !object.contains("y");
+        may_be_header = false;
+        if (header) {
+          file.header = parse_line_header(object.dump(-1, ' ', false, Json::error_handler_t::replace));
+        } else {
+          file.line.points.push_back(parse_point(object));
+        }
+      }
     } catch (const std::runtime_error& fault) {
       throw std::runtime_error(path + ", line " + std::to_string(number) + ": " + fault.what());
     }
-    may_be_header = false;
   }
-  if (in.bad()) throw std::runtime_error(path + ": reading failed");
-  if (line.points.empty()) throw std::runtime_error(path + ": has no points");
-  return line;
+  if (file.line.points.empty()) throw std::runtime_error(path + ": has no points");
+  return file;
 }
 
-void write_navigation_line(const std::string& path, const RecordedLine& line) {
+RecordedLine read_navigation_line(const std::string& path) {
+  return read_line_file(path).line;
+}
+
+void expect_finite_positions(const std::string& path, const RecordedLine& line) {
   for (std::size_t i = 0; i < line.points.size(); ++i) {
     if (std::isfinite(line.points[i].x) && std::isfinite(line.points[i].y)) continue;
     throw std::runtime_error(path + ": not written, since point " + std::to_string(i) + " lacks x or y");
   }
-  const std::string temporary = path + ".tmp." + std::to_string(getpid());
-  std::error_code error;
-  try {
-    write_points(temporary, line);
-    std::filesystem::rename(temporary, path, error);
-    if (error) throw std::runtime_error("cannot write " + path + ": " + error.message());
-  } catch (const std::runtime_error&) {
-    std::filesystem::remove(temporary, error);
-    throw;
+}
+
+void write_line_file(const std::string& path, const LineFile& file, Layout layout) {
+  expect_finite_positions(path, file.line);
+  const bool array = layout == Layout::kOneLine;
+  const char* const between = array ? ", " : "\n";
+  std::ostringstream out;
+  out.imbue(std::locale::classic());  // JSON has decimal points everywhere
+  out << std::fixed << (array ? "[" : "");
+  if (!is_empty(file.header)) out << to_json(file.header) << between;
+  for (std::size_t i = 0; i < file.line.points.size(); ++i) {
+    if (i > 0) out << between;
+    write_point(out, file.line.points[i]);
   }
+  out << (array ? "]\n" : "\n");
+  write_whole_file(path, out.str());
+}
+
+void write_navigation_line(const std::string& path, const RecordedLine& line) {
+  write_line_file(path, {{}, line});
 }
 
 }  // namespace relative_map::core

@@ -49,10 +49,20 @@ std::vector<ImageQueue::Image> ImageQueue::take(Time now, Time pose_stamp, const
   return images;
 }
 
+bool ImageQueue::is_unchanged(const LaneMarkers& markers) {
+  const auto unchanged = [](const LaneMarker& marker, Cubic& last) {
+    if (!(marker.quality > 0.0)) return true;
+    const bool same = same_numbers(marker.cubic, last);
+    last = marker.cubic;
+    return same;
+  };
+  const bool left = unchanged(markers.left, last_left_), right = unchanged(markers.right, last_right_);
+  return left && right;
+}
+
 /// Paint does not move with the vehicle.
-bool ImageQueue::is_frozen(const LaneMarkers& markers) {
-  if (!same_since_ || !same_numbers(markers.left.cubic, same_since_->left.cubic) ||
-      !same_numbers(markers.right.cubic, same_since_->right.cubic)) {
+bool ImageQueue::is_frozen(const LaneMarkers& markers, bool unchanged) {
+  if (!unchanged || !same_since_) {
     same_since_ = markers;
     frozen_ = false;
     return false;
@@ -76,7 +86,8 @@ std::optional<ImageQueue::Image> ImageQueue::look_at(const LaneMarkers& markers,
     remarks.push_back("lane markers: no pose is known for their stamp");
     return std::nullopt;
   }
-  if (is_frozen(markers)) {
+  const bool unchanged = is_unchanged(markers);
+  if (is_frozen(markers, unchanged)) {
     remarks.push_back("lane markers: they are frozen: the numbers stay the same while the vehicle moves");
     return std::nullopt;
   }
@@ -95,6 +106,7 @@ std::optional<ImageQueue::Image> ImageQueue::look_at(const LaneMarkers& markers,
   }
   const Pose2 base_from_sensor = now->to_local(*then).to_parent(markers.base_from_sensor);
   Image image{markers.stamp, {}};
+  image.sides.unchanged = unchanged;
   if (!left_fault) image.sides.left = sample_paint(markers.left, base_from_sensor);
   if (!right_fault) image.sides.right = sample_paint(markers.right, base_from_sensor);
   return image;

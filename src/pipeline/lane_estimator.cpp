@@ -17,7 +17,7 @@ constexpr double kHeadingBias0 = 0.01;  // [rad]
 constexpr double kPositionNoise = 0.03;   // [m]
 constexpr double kHeadingNoise = 0.0035;  // [rad]
 // Random walks, by the root of the time [s].
-constexpr double kBiasWalk = 0.08;           // [m]
+constexpr double kBiasWalk = 0.15;           // [m]
 constexpr double kHeadingBiasWalk = 0.0015;  // [rad]
 constexpr double kHeadingWalk = 0.002;       // [rad] of odometry
 constexpr double kSlipWalk = 0.02;           // [m] of odometry, sideways
@@ -45,6 +45,7 @@ void LaneEstimator::start(const VehicleState& localized) {
     LaneEstimator fresh;
     fresh.half_width_ = half_width_;
     fresh.given_up_ = given_up_;
+    fresh.watch_ = watch_;
     return fresh;
   }();
   origin_ = localized.map_from_base.position();
@@ -69,6 +70,7 @@ void LaneEstimator::give_up(const VehicleState& localized, const std::string& wh
 }
 
 void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& param) {
+  watch_.max_offset = param.max_offset;
   const bool forgotten = last_paint_ && to_seconds(localized.stamp - *last_paint_) > kForgetTime;
   // Without paint there is nothing to tell bias from place by.
   if (!last_ || !informed() || forgotten || has_jumped(*last_, localized) ||

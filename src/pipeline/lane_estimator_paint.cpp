@@ -12,14 +12,20 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kGate = 30.0;        // squared, in standard deviations: not this lane's paint
-constexpr double kOffsetGate = 3.5;   // standard deviations of a marker's mean offset
-constexpr double kNearEdge = 0.5;     // [m] from its border the vehicle may be taken to be in either lane
-constexpr double kSameBorder = 0.6;   // [m] by which paint may be off to be the border that it is not called
-constexpr double kPatience = 0.7;     // [s] of paint that agrees on something else, until it is believed
-constexpr double kMaxSurprise = 1.4;  // [m] that it may differ by: less than half a lane
-constexpr double kLostTime = 2.5;     // [s] in which none of the paint counted: the estimate is wrong
-constexpr double kUnseen = 1e4;       // [m^2] variance of a sample that has no line beside it
+constexpr double kGate = 30.0;       // squared, in standard deviations: not this lane's paint
+constexpr double kOffsetGate = 3.5;  // standard deviations of a marker's mean offset
+constexpr double kNearEdge = 0.5;    // [m] from its border the vehicle may be taken to be in either lane
+constexpr double kSameBorder = 0.6;  // [m] by which paint may be off to be the border that it is not called
+constexpr double kPatience = 0.7;    // [s] of paint that agrees on something else, until it is believed
+constexpr double kPatienceWithOne = 1.3;  // [s] of paint on one side only: outliers last for up to a second
+constexpr double kMaxSurprise = 1.5;      // [m] that paint may be off by: beyond, it is rather another lane's
+constexpr double kSameSurprise = 0.5;     // [m] between offsets that say the same
+constexpr double kDoubtTime = 2.5;        // [s] in which none of the paint counted: the estimate is doubted,
+constexpr double kLostTime = 5.0;         // [s] ... and given up
+constexpr double kUnseen = 1e4;           // [m^2] variance of a sample that has no line beside it
+constexpr double kShapeReach = 30.0;  // [m] ahead, where a change of the line's direction is looked for ...
+const Eigen::Vector2d kShapeChange(0.03,
+                                   0.05);  // [rad] ... here and there: paint can't stay the same beside it
 
 }  // namespace
 
@@ -64,7 +70,9 @@ std::optional<LaneEstimator::Measurement> LaneEstimator::measure(const PaintSamp
 bool LaneEstimator::fits(const Measurement& measurement) const {
   if (measurement.squared_distance > kGate) return false;
   // The mean by itself, too: five numbers hide a shift of all of them.
-  return std::abs(measurement.mean_offset()) < kOffsetGate * mean_stddev(measurement);
+  const double offset = std::abs(measurement.mean_offset());
+  if (!informed() && offset > watch_.max_offset) return false;
+  return offset < kMaxSurprise && offset < kOffsetGate * mean_stddev(measurement);
 }
 
 double LaneEstimator::mean_stddev(const Measurement& measurement) const {
@@ -79,53 +87,63 @@ Eigen::Matrix<double, kPaintSamples, 1> LaneEstimator::Measurement::weights() co
   return weights / weights.sum();
 }
 
-std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const NavigationLine& line,
-                                            const LineProjection& projection, Time stamp) {
-  std::vector<std::string> ignored;
-  if (!last_) return ignored;
+std::array<LaneEstimator::SeenSide, 2> LaneEstimator::assign(const SeenSides& sides,
+                                                             const NavigationLine& line,
+                                                             const LineProjection& projection) const {
   const Filter::State& x = filter_.state();
-  struct Seen {
-    Index side;
-    const std::optional<PaintSamples>* paint;
-    const char* name;
-    std::optional<Measurement> measurement;
-  };
-  std::array<Seen, 2> seen{Seen{kLeft, &sides.left, "left", {}}, Seen{kRight, &sides.right, "right", {}}};
-  const auto measure_again = [&](Seen& one) {
-    one.measurement.reset();
-    if (*one.paint) one.measurement = measure(**one.paint, one.side, line, projection.nearest_vertex);
-  };
-  for (Seen& one : seen) measure_again(one);
+  std::array<SeenSide, 2> seen{SeenSide{kLeft, "left", sides.left, {}},
+                               SeenSide{kRight, "right", sides.right, {}}};
+  for (SeenSide& one : seen) measure_again(one, line, projection);
   // Beside a border the camera and the map may not be of one mind yet on which lane the vehicle is in: the
   // lane's left border may be on the right of the camera already, and the other way round.
   const double to_left = x[kLeft] - projection.l, to_right = x[kRight] + projection.l;
   if (std::min(to_left, to_right) < kNearEdge) {
     const bool at_left = to_left < to_right;
-    Seen &border = seen[at_left ? 0 : 1], &beyond = seen[at_left ? 1 : 0];
-    Seen crossed{border.side, beyond.paint, beyond.name, {}};
-    measure_again(crossed);
+    SeenSide &border = seen[at_left ? 0 : 1], &beyond = seen[at_left ? 1 : 0];
+    SeenSide crossed{border.side, beyond.name, beyond.paint, {}};
+    measure_again(crossed, line, projection);
     const double offset = crossed.measurement ? std::abs(crossed.measurement->mean_offset()) : kSameBorder;
     if (offset < kSameBorder &&
         !(border.measurement && std::abs(border.measurement->mean_offset()) < offset)) {
       border = crossed;
+      beyond.paint.reset();
       beyond.measurement.reset();
     }
   }
-  const auto distance = [](const Seen& one) {
+  const auto distance = [](const SeenSide& one) {
     return one.measurement ? one.measurement->squared_distance : std::numeric_limits<double>::max();
   };
   if (distance(seen[1]) < distance(seen[0])) std::swap(seen[0], seen[1]);
+  return seen;
+}
 
+void LaneEstimator::measure_again(SeenSide& one, const NavigationLine& line,
+                                  const LineProjection& projection) const {
+  one.measurement.reset();
+  if (one.paint) one.measurement = measure(*one.paint, one.side, line, projection.nearest_vertex);
+}
+
+std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const NavigationLine& line,
+                                            const LineProjection& projection, Time stamp) {
+  if (!last_) return {};
+  if (is_frozen(sides, line, projection)) {
+    const std::string why = "they are frozen: the numbers stay the same while the line beside them moves";
+    if (informed()) give_up(*last_, why);  // they have led it astray
+    return {why};
+  }
+  std::array<SeenSide, 2> seen = assign(sides, line, projection);
+  if (!may_begin(seen, stamp)) return {};
+
+  std::vector<std::string> ignored;
   bool any = false;
-  for (Seen& one : seen) {
-    if (any) measure_again(one);  // the surer side has moved the state
+  for (SeenSide& one : seen) {
+    if (any) measure_again(one, line, projection);  // the surer side has moved the state
     if (!one.measurement) continue;
     if (fits(*one.measurement)) {
       filter_.correct(one.measurement->innovation, one.measurement->jacobian, one.measurement->covariance);
       if (!any) left_paint_ = right_paint_ = BoundaryType::kUnknown;
-      (one.side == kLeft ? left_paint_ : right_paint_) = (*one.paint)->type;
-      const double range = (*one.paint)->to;
-      paint_range_ = any ? std::max(paint_range_, range) : range;
+      (one.side == kLeft ? left_paint_ : right_paint_) = one.paint->type;
+      paint_range_ = any ? std::max(paint_range_, one.paint->to) : one.paint->to;
       any = true;
     } else {
       std::ostringstream reason;
@@ -137,31 +155,74 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
   }
   if (any) {
     last_paint_ = stamp;
-    disagreeing_since_.reset();
+    surprise_.reset();
     refused_since_.reset();
+    doubted_ = false;
     given_up_.clear();
   } else if (!ignored.empty()) {
-    reconsider(seen[0].measurement, seen[1].measurement, stamp);
-    if (!refused_since_) refused_since_ = stamp;
-    if (informed() && to_seconds(stamp - *refused_since_) > kLostTime) {
-      give_up(*last_, "the lane markers have not been this lane's for long: localization is believed again");
-    }
+    reconsider(seen, stamp);
   }
   return ignored;
 }
 
-void LaneEstimator::reconsider(const std::optional<Measurement>& first,
-                               const std::optional<Measurement>& second, Time stamp) {
-  const bool agree = first && second && std::abs(first->mean_offset() - second->mean_offset()) < 0.5;
-  if (!agree || std::abs(first->mean_offset()) > kMaxSurprise) {
-    disagreeing_since_.reset();
+/// The first paint must not be an outlier's: both sides that fit together, or one for a while.
+bool LaneEstimator::may_begin(const std::array<SeenSide, 2>& seen, Time stamp) {
+  if (informed()) return true;
+  if (seen[0].measurement && seen[1].measurement) {
+    const double apart = seen[0].measurement->mean_offset() - seen[1].measurement->mean_offset();
+    if (std::abs(apart) < kSameSurprise) return true;
+  }
+  if (!watch_.begun || to_seconds(stamp - watch_.last_image) > 1.0) watch_.begun = stamp;
+  watch_.last_image = stamp;
+  return to_seconds(stamp - *watch_.begun) > kPatience;
+}
+
+/// Whether paint says the same numbers as before, while the line has moved beside the vehicle.
+bool LaneEstimator::is_frozen(const SeenSides& sides, const NavigationLine& line,
+                              const LineProjection& projection) {
+  // By headings, since localization's position drifts and jumps.
+  const Pose2& pose = last_->map_from_base;
+  const Point2 position = pose.position() - line.origin;
+  LineWalker walker(line, projection.nearest_vertex);
+  Eigen::Vector2d shape;
+  for (int i = 0; i < 2; ++i) {
+    const Point2 normal = walker.beside(position + i * kShapeReach * pose.forward()).normal;
+    shape[i] = std::atan2(-pose.forward().dot(normal), -cross(pose.forward(), normal));
+  }
+  if (!sides.unchanged || line.id != watch_.line_id) {
+    watch_.line_id = line.id;
+    watch_.line_shape = shape;
+    watch_.frozen = false;
+  }
+  if (((shape - watch_.line_shape).cwiseAbs().array() > kShapeChange.array()).any()) watch_.frozen = true;
+  return watch_.frozen;
+}
+
+void LaneEstimator::reconsider(const std::array<SeenSide, 2>& seen, Time stamp) {
+  if (!refused_since_) refused_since_ = stamp;
+  const double refused = to_seconds(stamp - *refused_since_);
+  if (informed() && refused > kLostTime) {
+    give_up(*last_, "the lane markers have not been this lane's for long: localization is believed again");
     return;
   }
-  if (!disagreeing_since_) disagreeing_since_ = stamp;
-  if (to_seconds(stamp - *disagreeing_since_) < kPatience) return;
-  // Both borders say the same for long: the bias is another one than was thought.
-  doubt_bias(first->mean_offset() * first->mean_offset());
-  disagreeing_since_.reset();
+  if (refused > kDoubtTime && !doubted_) {
+    doubt_bias(kMaxSurprise * kMaxSurprise);
+    doubted_ = true;
+  }
+  const bool both = seen[0].measurement && seen[1].measurement;
+  double offset = seen[0].measurement ? seen[0].measurement->mean_offset() : 0.0;
+  if (both) {
+    const double other = seen[1].measurement->mean_offset();
+    if (std::abs(offset - other) > kSameSurprise) return;
+    offset = 0.5 * (offset + other);
+  }
+  if (std::abs(offset) > kMaxSurprise) return;
+  if (!surprise_ || std::abs(offset - surprise_->offset) > kSameSurprise) surprise_ = Surprise{offset, stamp};
+  surprise_->offset = offset;
+  if (to_seconds(stamp - surprise_->since) < (both ? kPatience : kPatienceWithOne)) return;
+  // It has said the same for long: the bias is another one than was thought.
+  doubt_bias(offset * offset);
+  surprise_.reset();
 }
 
 }  // namespace relative_map::core

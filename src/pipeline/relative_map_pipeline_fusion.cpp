@@ -28,11 +28,11 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build_estimated(const Veh
   estimator_.expect_half_width(
       expected_half_width(lines, line, config_->navigation_lane, default_half_width()));
   estimator_.follow_line(*line.line, line.projection);
+  std::vector<std::string> ignored;  // of the newest image
   for (const ImageQueue::Image& image : images) {
-    for (const std::string& side : estimator_.see(image.sides, *line.line, line.projection, image.stamp)) {
-      remarks_.push_back("lane markers: " + side);
-    }
+    ignored = estimator_.see(image.sides, *line.line, line.projection, image.stamp);
   }
+  for (const std::string& side : ignored) remarks_.push_back("lane markers: " + side);
   if (!estimator_.given_up().empty()) remarks_.push_back("lane markers: " + estimator_.given_up());
   if (!images.empty()) {
     vehicle = predicted(estimator_.corrected(localized), now);
@@ -65,11 +65,11 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build_estimated(const Veh
 
 std::variant<RelativeMap, Status> RelativeMapPipeline::lane_of_markers(
     const std::vector<ImageQueue::Image>& images, const VehicleState& localized, Time now, Status otherwise) {
+  std::vector<std::string> ignored;  // of the newest image
   for (const ImageQueue::Image& image : images) {
-    for (const std::string& side : marker_estimator_.see(image.sides, default_half_width(), image.stamp)) {
-      remarks_.push_back("lane markers: " + side);
-    }
+    ignored = marker_estimator_.see(image.sides, default_half_width(), image.stamp);
   }
+  for (const std::string& side : ignored) remarks_.push_back("lane markers: " + side);
   const auto last_paint = marker_estimator_.last_paint();
   const double age = last_paint ? to_seconds(localized.stamp - *last_paint) : 0.0;
   if (!last_paint || age > config_->lane_fusion.hold_time) {

@@ -1,5 +1,7 @@
 #include "relative_map/ros/diagnostics.hpp"
 
+#include <sstream>
+
 namespace relative_map {
 
 namespace {
@@ -20,6 +22,16 @@ unsigned char level_of(core::StatusCode code) {
     default:
       return DiagnosticStatus::ERROR;
   }
+}
+
+/// With its standard deviation, if it was estimated.
+void add(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& name,
+         const core::Estimate& estimate) {
+  std::ostringstream text;
+  text.precision(3);
+  text << estimate.value;
+  if (estimate.stddev >= 0.0) text << " +- " << estimate.stddev;
+  status.add(name, text.str());
 }
 
 }  // namespace
@@ -86,6 +98,13 @@ void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticSt
   status.add("lateral offset [m]", statistics.lateral_offset);
   status.add("heading offset [rad]", statistics.heading_offset);
   status.add("remaining distance [m]", statistics.remaining_distance);
+  status.add("fusion method", map.fusion.method);
+  add(status, "fused lateral offset [m]", map.fusion.lateral_offset);
+  add(status, "fused longitudinal offset [m]", map.fusion.longitudinal_offset);
+  add(status, "fused heading offset [rad]", map.fusion.heading_offset);
+  add(status, "left half width [m]", map.fusion.left_half_width);
+  add(status, "right half width [m]", map.fusion.right_half_width);
+  status.add("remarks", map.status.code == core::StatusCode::kOk ? map.status.message : "");
   status.add("marker range [m]", map.fusion.marker_range);
   status.add("marker age [s]", map.fusion.marker_age);
   for (const auto& [topic, input] : statistics.inputs) {

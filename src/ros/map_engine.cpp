@@ -109,7 +109,7 @@ MapMsgPtr MapEngine::tick(const ros::Time& now) {
   if (now < last_tick_) reset();
   last_tick_ = now;
   const bool of_now = pose_is_of_now(now);
-  if (of_now && mapped_pose_ == newest_pose_) return nullptr;
+  if (of_now && mapped_pose_ == newest_pose_ && !config_->predict_to_tick) return nullptr;
   mapped_pose_ = newest_pose_;
 
   const std::optional<core::Status> fault = localization_fault(now);

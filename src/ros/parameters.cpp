@@ -18,7 +18,7 @@ void flatten_into(ParameterSet& set, const std::string& path, XmlRpc::XmlRpcValu
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeStruct:
       for (auto& [key, child] : value) {
-        if (path.empty() && key == kReconfigureNamespace) continue;
+        if (path.empty() && (key == kReconfigureNamespace || key == kLinesParameter)) continue;
         flatten_into(set, path.empty() ? key : path + "/" + key, child);
       }
       break;
@@ -54,6 +54,7 @@ void flatten_into(ParameterSet& set, const std::string& path, const YAML::Node& 
   if (node.IsMap()) {
     for (const auto& entry : node) {
       const std::string key = entry.first.as<std::string>();
+      if (path.empty() && key == kLinesParameter) continue;
       flatten_into(set, path.empty() ? key : path + "/" + key, entry.second);
     }
   } else if (node.IsScalar()) {
@@ -131,6 +132,7 @@ class Reader {
 
 void read_pipeline(Reader& reader, core::PipelineConfig& config) {
   reader.read("base_frame", config.base_frame);
+  reader.read("predict_to_tick", config.predict_to_tick);
   reader.read("enable_cyclic_rerouting", config.enable_cyclic_rerouting);
   reader.read("generate_left_boundary", config.generate_left_boundary);
 
@@ -155,6 +157,9 @@ void read_pipeline(Reader& reader, core::PipelineConfig& config) {
   reader.read(group + "lane_marker_weight", lane.lane_marker_weight);
 
   reader.read("lane_fusion/method", config.lane_fusion.method);
+  reader.read("lane_fusion/max_offset", config.lane_fusion.max_offset);
+  reader.read("lane_fusion/decay_time", config.lane_fusion.decay_time);
+  reader.read("lane_fusion/hold_time", config.lane_fusion.hold_time);
   reader.read("lane_fusion/fade_length", config.lane_fusion.fade_length);
 
   reader.read("max_age/localization", config.max_age.localization);

@@ -2,6 +2,8 @@
 
 #include <XmlRpcValue.h>
 
+#include "relative_map/ros/line_loader.hpp"
+
 namespace relative_map {
 
 namespace {
@@ -67,6 +69,7 @@ RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
       intake_config_(config_.pipeline),
       diagnostics_(nh, private_nh, private_nh.getNamespace()),
       intake_spinner_(1, &intake_queue_) {
+  load_lines_of_parameter();
   map_publisher_ = nh_.advertise<MapMsg>("relative_map", 1);
   markers_publisher_ = private_nh_.advertise<visualization_msgs::MarkerArray>("markers", 1);
   centerline_publisher_ = private_nh_.advertise<nav_msgs::Path>("centerline", 1);
@@ -81,6 +84,14 @@ RelativeMapNode::RelativeMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
       "navigation", 1, [this](const NavigationInfoConstPtr& message) { on_navigation(message); },
       ros::VoidConstPtr(), &intake_queue_);
   navigation_subscriber_ = nh_.subscribe(intake);
+  // Files are read where lines are prepared: a tick does not wait for them.
+  const auto on_load_request = [this](LoadNavigationLines::Request& request,
+                                      LoadNavigationLines::Response& response) {
+    return on_load(request, response);
+  };
+  ros::AdvertiseServiceOptions load = ros::AdvertiseServiceOptions::create<LoadNavigationLines>(
+      "load_navigation_lines", on_load_request, ros::VoidConstPtr(), &intake_queue_);
+  load_service_ = private_nh_.advertiseService(load);
 
   reconfigure_ = std::make_unique<dynamic_reconfigure::Server<RelativeMapConfig>>(
       reconfigure_mutex_, ros::NodeHandle(private_nh_, kReconfigureNamespace));
@@ -108,6 +119,9 @@ void RelativeMapNode::subscribe(const std::string& topic, uint32_t queue_size, r
   const boost::function<void(const Pointer&)> callback = [this, topic, handler](const Pointer& message) {
     const ros::Time now = ros::Time::now();
     observer_.note_input(topic, message->header.stamp, ros::WallTime::now());
+    if constexpr (std::is_same_v<Message, LocalizationEstimate>) {
+      note_localization_frame(message->header.frame_id);
+    }
     (engine_.*handler)(message, now);
   };
   subscriber = nh_.subscribe<Message>(topic, queue_size, callback, ros::VoidConstPtr(),
@@ -123,23 +137,72 @@ RelativeMapNode::~RelativeMapNode() {
     subscriber->shutdown();
   }
   reset_service_.shutdown();
+  load_service_.shutdown();
   reconfigure_.reset();
   intake_spinner_.stop();
 }
 
-void RelativeMapNode::on_navigation(const NavigationInfoConstPtr& message) {
+std::shared_ptr<const core::NavigationLines> RelativeMapNode::prepare(const NavigationInfo& message) {
   core::PipelineConfig config;
   {
     const std::lock_guard<std::mutex> lock(intake_mutex_);
     config = intake_config_;
   }
-  auto lines = MapEngine::prepare(*message, config);
+  auto lines = MapEngine::prepare(message, config);
   log_intake(*lines);
+  return lines;
+}
+
+void RelativeMapNode::take_lines(std::shared_ptr<const core::NavigationLines> lines) {
   // The one before the last is freed here, and not by the tick that lets go of it.
   kept_lines_[0] = std::move(kept_lines_[1]);
   kept_lines_[1] = lines;
   const std::lock_guard<std::mutex> lock(intake_mutex_);
   new_lines_ = std::move(lines);
+}
+
+void RelativeMapNode::on_navigation(const NavigationInfoConstPtr& message) {
+  take_lines(prepare(*message));
+}
+
+void RelativeMapNode::load_lines_of_parameter() {
+  XmlRpc::XmlRpcValue value;
+  if (!private_nh_.getParam(kLinesParameter, value)) return;
+  const std::vector<std::string> files = line_files(value);
+  if (files.empty()) return;
+  const auto lines = prepare(to_message(load_lines(files, "")));
+  expect_all_loaded(*lines, files.size());
+  take_lines(lines);
+}
+
+void RelativeMapNode::note_localization_frame(const std::string& frame_id) {
+  const std::lock_guard<std::mutex> lock(intake_mutex_);
+  if (localization_frame_ != frame_id) localization_frame_ = frame_id;
+}
+
+bool RelativeMapNode::on_load(LoadNavigationLines::Request& request,
+                              LoadNavigationLines::Response& response) {
+  try {
+    std::string localization_frame;
+    {
+      const std::lock_guard<std::mutex> lock(intake_mutex_);
+      localization_frame = frame_name(localization_frame_);
+    }
+    const core::NavigationInfo info =
+        load_lines(request.files, request.frame_id.empty() ? localization_frame : request.frame_id);
+    expect_frame(info.frame_id, localization_frame);
+    const auto lines = prepare(to_message(info));
+    expect_all_loaded(*lines, request.files.size());
+    response.lines = described(*lines);
+    response.message =
+        std::to_string(lines->lines.size()) + " lines loaded in frame '" + lines->frame_id + "'";
+    response.success = true;
+    take_lines(lines);
+  } catch (const std::exception& fault) {
+    response.message = std::string("nothing was loaded: ") + fault.what();
+    ROS_ERROR_STREAM("load_navigation_lines: " << response.message);
+  }
+  return true;
 }
 
 void RelativeMapNode::pick_up_lines() {

@@ -62,6 +62,9 @@ void CheckFiveLanes(benchmark::State& state) {
 void TickOneLine(benchmark::State& state) {
   time_ticks(state, parallel_lines(1, 0.1 * static_cast<double>(state.range(0)), 0.1), false);
 }
+void TickManyLines(benchmark::State& state) {
+  time_ticks(state, scattered_lines(static_cast<std::size_t>(state.range(0))), false);
+}
 void CheckOneLine(benchmark::State& state) {
   time_check(state, parallel_lines(1, 0.1 * static_cast<double>(state.range(0)), 0.1));
 }
@@ -85,6 +88,7 @@ BENCHMARK(CheckRecordedLines)->Unit(benchmark::kMicrosecond);
 BENCHMARK(TickFiveLanes)->Unit(benchmark::kMicrosecond);
 BENCHMARK(CheckFiveLanes)->Unit(benchmark::kMicrosecond);
 BENCHMARK(TickOneLine)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(TickManyLines)->Arg(10000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(CheckOneLine)->Arg(100000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(IntakeRecordedLines)->Unit(benchmark::kMillisecond);
 BENCHMARK(IntakeOneLine)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);

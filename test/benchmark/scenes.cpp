@@ -68,6 +68,19 @@ Scene parallel_lines(std::size_t count, double length, double spacing) {
   return scene;
 }
 
+Scene scattered_lines(std::size_t count) {
+  Scene scene = parallel_lines(5, 600.0, 3.0);
+  std::vector<RecordedLine>& lines = scene.navigation.lines;
+  for (std::size_t i = lines.size(); i < count; ++i) {
+    RecordedLine copy = lines[i % 5];
+    for (LinePoint& point : copy.points) point.x += 1000.0 * static_cast<double>(i / 5);
+    copy.name = "lane_" + std::to_string(i);
+    copy.priority = static_cast<std::uint32_t>(i);
+    lines.push_back(std::move(copy));
+  }
+  return scene;
+}
+
 Scene closed_loop(double length, double spacing) {
   Scene scene;
   scene.navigation.frame_id = "map";

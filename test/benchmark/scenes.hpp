@@ -20,6 +20,8 @@ struct Scene {
 std::optional<Scene> recorded_lines();
 /// Side by side, 3.5 m apart, gently winding.
 Scene parallel_lines(std::size_t count, double length, double spacing);
+/// Five lines side by side, and their copies all over the country, `count` in all.
+Scene scattered_lines(std::size_t count);
 /// A lap of `length` [m] whose last point is its first.
 Scene closed_loop(double length, double spacing);
 

@@ -77,6 +77,13 @@ class LaunchFiles(unittest.TestCase):
                          [('relative_map', 'relative_map', 'relative_map_node')])
         self.assertIn('/relative_map/map_param/default_left_width', config.params)
 
+    def test_name_is_the_nodes_and_its_parameters(self):
+        for nodelet in ('true', 'false'):
+            config = load('relative_map.launch', 'name:=mapper', 'nodelet:=' + nodelet)
+            self.assertIsNotNone(node(config, 'mapper'))
+            self.assertIsNone(node(config, 'relative_map'))
+            self.assertIn('/mapper/map_param/default_left_width', config.params)
+
     def test_rate_takes_the_place_of_the_files(self):
         for nodelet in ('true', 'false'):
             params = load('relative_map.launch', 'rate:=50', 'nodelet:=' + nodelet).params

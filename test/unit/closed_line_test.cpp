@@ -221,7 +221,9 @@ TEST(ClosedLines, LassosAreNotClosed) {
       const std::string words = std::to_string(rope) + " m to a circle of " + std::to_string(radius) + " m";
       EXPECT_FALSE(test::prepared(joined({out, round, back})).closed()) << words << " and back";
       // From 3 m on the side of a wide circle it is a lap that runs past its start.
-      if (rope > 3.0) EXPECT_FALSE(test::prepared(joined({out, round})).closed()) << words;
+      if (rope > 3.0) {
+        EXPECT_FALSE(test::prepared(joined({out, round})).closed()) << words;
+      }
     }
   }
 }

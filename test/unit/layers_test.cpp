@@ -21,6 +21,7 @@ const std::map<std::string, std::set<std::string>> kMayUse = {
     {"pipeline", {"geometry", "model", "pipeline"}},
     {"io", {"geometry", "model", "io"}},
     {"simulation", {"geometry", "model", "pipeline", "io", "simulation"}},
+    {"tools", {"geometry", "model", "pipeline", "io", "simulation", "tools"}},
     {"ros", {"geometry", "model", "pipeline", "io", "ros"}},
 };
 
@@ -74,6 +75,8 @@ TEST(Layers, AWrongIncludeIsFound) {
   EXPECT_EQ(fault_of("simulation", "geometry_msgs/Point.h"), "a ROS header");
   EXPECT_EQ(fault_of("geometry", "relative_map/model/inputs.hpp"), "a layer that is not above it");
   EXPECT_EQ(fault_of("ros", "relative_map/simulation/road.hpp"), "a layer that is not above it");
+  EXPECT_EQ(fault_of("ros", "relative_map/tools/line_smoother.hpp"), "a layer that is not above it");
+  EXPECT_EQ(fault_of("tools", "nav_msgs/Path.h"), "a ROS header");
   EXPECT_EQ(fault_of("ros", "ros/time.h"), "");
   EXPECT_EQ(fault_of("pipeline", "relative_map/model/map.hpp"), "");
 }

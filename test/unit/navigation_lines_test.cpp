@@ -226,13 +226,15 @@ TEST(NavigationLines, GetTheGeometryOfTheirPositionsWhereTheirOwnDoesNotFitLongS
     line.points[i].kappa = 0.02 - 0.0015 * (i % 2 == 0 ? 1.0 : -1.0);
     line.points[i].dkappa = 0.0;
   }
-  for (const PathPoint& point : prepare({line})->lines.at(0).points) EXPECT_NEAR(point.kappa, 0.02, 1e-6);
+  const auto prepared = prepare({line});
+  for (const PathPoint& point : prepared->lines.at(0).points) EXPECT_NEAR(point.kappa, 0.02, 1e-6);
 }
 
 TEST(NavigationLines, GetTheGeometryOfTheirPositionsWhereTheirOwnCurvatureDoesNotAddUpOnTheLastMetres) {
   RecordedLine line = recording(straight(Pose2(kUtm, 3.0), 4.0, 0.5));
   for (LinePoint& point : line.points) point.theta = 3.0, point.kappa = 0.004, point.dkappa = 0.0;
-  for (const PathPoint& point : prepare({line})->lines.at(0).points) EXPECT_NEAR(point.kappa, 0.0, 1e-6);
+  const auto prepared = prepare({line});
+  for (const PathPoint& point : prepared->lines.at(0).points) EXPECT_NEAR(point.kappa, 0.0, 1e-6);
 }
 
 TEST(NavigationLines, GetTheRatesOfTheirPositionsWhereTheirOwnAreMissing) {

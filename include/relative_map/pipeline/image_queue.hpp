@@ -32,10 +32,13 @@ class ImageQueue {
   std::optional<Image> look_at(const LaneMarkers& markers, Time pose_stamp, const PipelineConfig& config,
                                std::vector<std::string>& remarks);
 
-  bool is_frozen(const LaneMarkers& markers);
+  /// Whether each marker that is seen says what it said when it was last seen.
+  bool is_unchanged(const LaneMarkers& markers);
+  bool is_frozen(const LaneMarkers& markers, bool unchanged);
 
   std::vector<LaneMarkers> waiting_;
-  std::optional<LaneMarkers> same_since_;  ///< the first image of those that say the same numbers as the last
+  Cubic last_left_, last_right_;
+  std::optional<LaneMarkers> same_since_;  ///< the first image of those that say the same numbers
   bool frozen_ = false;
   PoseBuffer odometry_;  ///< poses by speed and yaw rate alone, from an origin of its own
   std::optional<VehicleState> last_;

@@ -59,7 +59,8 @@ class KalmanFilter {
     constexpr int kRows = Jacobian::RowsAtCompileTime;
     const Eigen::Matrix<double, States, kRows> p_ht = covariance_ * h.transpose();
     const Eigen::Matrix<double, kRows, kRows> s = h * p_ht + r;
-    const Eigen::Matrix<double, States, kRows> gain = s.ldlt().solve(p_ht.transpose()).transpose();
+    const Eigen::Matrix<double, kRows, States> gain_transposed = s.ldlt().solve(p_ht.transpose());
+    const Eigen::Matrix<double, States, kRows> gain = gain_transposed.transpose();
     state_ += gain * innovation;
     // (I - K H) P (I - K H)' + K R K'
     const Covariance p =

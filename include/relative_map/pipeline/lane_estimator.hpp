@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,6 +72,30 @@ class LaneEstimator {
     double mean_offset() const { return weights().dot(innovation); }
   };
 
+  /// One border of the lane, and the marker that it is taken for.
+  struct SeenSide {
+    Index side;
+    const char* name;  ///< of the marker
+    std::optional<PaintSamples> paint;
+    std::optional<Measurement> measurement;
+  };
+  /// An offset that paint insists on.
+  struct Surprise {
+    double offset;  ///< [m]
+    Time since;
+  };
+
+  /// What is remembered of the stream of images, whatever becomes of the estimate.
+  struct Watch {
+    std::optional<Time> begun;  ///< since when one side alone has been seen
+    Time last_image{};          ///< of it
+    double max_offset = 0.0;    ///< [m] LaneFusionParam
+    bool frozen = false;        ///< paint has not changed, though the line has
+    std::string line_id;
+    Eigen::Vector2d line_shape =
+        Eigen::Vector2d::Zero();  ///< [rad] that line's directions, when paint last changed
+  };
+
   void start(const VehicleState& localized);
   void give_up(const VehicleState& localized, const std::string& why);
   void follow_odometry(const VehicleState& to, double decay_time);
@@ -80,9 +105,14 @@ class LaneEstimator {
                                      std::size_t vertex) const;
   bool fits(const Measurement& measurement) const;
   double mean_stddev(const Measurement& measurement) const;
-  /// Takes the bias for less sure when both borders have been saying the same for long.
-  void reconsider(const std::optional<Measurement>& first, const std::optional<Measurement>& second,
-                  Time stamp);
+  void measure_again(SeenSide& one, const NavigationLine& line, const LineProjection& projection) const;
+  /// The sides, the surer one first.
+  std::array<SeenSide, 2> assign(const SeenSides& sides, const NavigationLine& line,
+                                 const LineProjection& projection) const;
+  bool may_begin(const std::array<SeenSide, 2>& seen, Time stamp);
+  bool is_frozen(const SeenSides& sides, const NavigationLine& line, const LineProjection& projection);
+  /// What to make of paint of which nothing fits.
+  void reconsider(const std::array<SeenSide, 2>& seen, Time stamp);
   void doubt_bias(double variance);
 
   Filter filter_;
@@ -93,7 +123,10 @@ class LaneEstimator {
   double first_knot_s_ = 0.0;  ///< [m] the same for the first knot
   double last_projected_s_ = 0.0;
   double half_width_ = 1.75;  ///< [m] expected where paint tells nothing
-  std::optional<Time> last_paint_, disagreeing_since_, refused_since_;
+  std::optional<Time> last_paint_, refused_since_;
+  std::optional<Surprise> surprise_;
+  bool doubted_ = false;  ///< since refused_since_
+  Watch watch_;
   double paint_range_ = 0.0;
   std::string given_up_;
   BoundaryType left_paint_ = BoundaryType::kUnknown, right_paint_ = BoundaryType::kUnknown;

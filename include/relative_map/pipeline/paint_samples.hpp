@@ -25,6 +25,7 @@ struct PaintSamples {
 /// The paint of one image as seen from the body now; none: not seen, or of no use.
 struct SeenSides {
   std::optional<PaintSamples> left, right;
+  bool unchanged = false;  ///< the numbers are those of the image before
 };
 
 /// Samples the paint, seen from where the image was taken: `base_from_sensor` is the marker's frame then, as

@@ -27,8 +27,8 @@ struct NodeConfig {
   OrientationConvention orientation_convention = OrientationConvention::kFlu;
 };
 
-/// Parameters as the parameter server has them; the namespace of dynamic_reconfigure is left out.
-/// What is no scalar is kept as its text, for `make_node_config` to name.
+/// Parameters as the parameter server has them; the namespace of dynamic_reconfigure and the list of files
+/// are left out. What is no scalar is kept as its text, for `make_node_config` to name.
 ParameterSet flatten(const XmlRpc::XmlRpcValue& tree);
 /// Reads a YAML file; throws std::runtime_error naming file and fault.
 ParameterSet read_yaml(const std::string& file);
@@ -39,5 +39,7 @@ NodeConfig make_node_config(const ParameterSet& parameters, const std::string& u
 
 /// Where dynamic_reconfigure keeps its own copies of the parameters, below the private namespace.
 constexpr const char* kReconfigureNamespace = "reconfigure";
+/// A list of files, which is the node's business and no part of its configuration: see line_loader.hpp.
+constexpr const char* kLinesParameter = "navigation_lines";
 
 }  // namespace relative_map

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dynamic_reconfigure/server.h>
+#include <relative_map/LoadNavigationLines.h>
 #include <relative_map/RelativeMapConfig.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -41,6 +42,11 @@ class RelativeMapNode {
   void on_navigation(const NavigationInfoConstPtr& message);
   void on_timer(const ros::TimerEvent& event);
   void on_reconfigure(RelativeMapConfig& request, uint32_t level);
+  bool on_load(LoadNavigationLines::Request& request, LoadNavigationLines::Response& response);
+  void load_lines_of_parameter();
+  void note_localization_frame(const std::string& frame_id);
+  std::shared_ptr<const core::NavigationLines> prepare(const NavigationInfo& message);
+  void take_lines(std::shared_ptr<const core::NavigationLines> lines);
   bool on_reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void pick_up_lines();
   void publish_views(const MapMsg& map);
@@ -54,14 +60,15 @@ class RelativeMapNode {
   MapMarkers markers_;
   RawLine raw_line_;
 
-  std::mutex intake_mutex_;  ///< guards the next two
+  std::mutex intake_mutex_;  ///< guards the next three
+  std::string localization_frame_;
   std::shared_ptr<const core::NavigationLines> new_lines_;
   core::PipelineConfig intake_config_;
   std::array<std::shared_ptr<const core::NavigationLines>, 2> kept_lines_;  ///< of the intake's thread
 
   ros::Publisher map_publisher_, markers_publisher_, centerline_publisher_;
   ros::Subscriber localization_subscriber_, chassis_subscriber_, lane_markers_subscriber_;
-  ros::ServiceServer reset_service_;
+  ros::ServiceServer reset_service_, load_service_;
   ros::Timer timer_;
   uint8_t logged_code_ = MapStatus::OK;
   ThrottledLog complaints_;

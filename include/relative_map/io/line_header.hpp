@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+
+namespace relative_map::core {
+
+enum class Projection {
+  kNone,   ///< not known
+  kUtm,    ///< easting and northing of a UTM zone
+  kLocal,  ///< ENU, tangent to the ellipsoid at an origin
+};
+
+/// Where a map frame lies on the earth (WGS 84), as far as it is known.
+struct GeoReference {
+  Projection projection = Projection::kNone;
+  int zone = 0;            ///< UTM: 1 to 60
+  bool north = true;       ///< UTM: the hemisphere
+  double latitude = 0.0;   ///< [deg] local: of the origin
+  double longitude = 0.0;  ///< [deg]
+  double altitude = 0.0;   ///< [m] above the ellipsoid
+};
+
+/// What a file of a navigation line says about its map frame.
+struct LineHeader {
+  std::string frame_id;  ///< empty: not given
+  GeoReference reference;
+};
+
+bool is_empty(const LineHeader& header);
+
+/// E.g. "UTM zone 50N", "local ENU about 48.1, 11.5", "no projection".
+std::string describe(const GeoReference& reference);
+
+/// Why coordinates under these two can't be used together, as the end of a sentence: "one is in ..., the
+/// other in ..."; empty: they can, as far as is known.
+std::string conflict(const LineHeader& a, const LineHeader& b);
+
+/// The header as the one-line JSON object that stands first in a file, without a line's end:
+/// {"header": {"frame_id": "map", "projection": "utm", "zone": 50, "north": true}} or
+/// {"header": {"frame_id": "map", "projection": "local", "latitude": 48.1, "longitude": 11.5, "altitude":
+/// 0.0}}.
+std::string to_json(const LineHeader& header);
+
+/// Reads such an object; one without "header" gives an empty header (another tool's). Throws
+/// std::runtime_error, a fault without its place, if a header holds what can't be.
+LineHeader parse_line_header(const std::string& json);
+
+}  // namespace relative_map::core

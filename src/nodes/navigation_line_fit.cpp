@@ -1,0 +1,133 @@
+// Subcommands of navigation_line that make a line fit to be driven on, or say whether it is.
+#include <cstdio>
+#include <iostream>
+
+#include "navigation_line_command.hpp"
+#include "relative_map/tools/line_check.hpp"
+#include "relative_map/tools/line_smoother.hpp"
+
+namespace relative_map {
+namespace {
+
+using Remappings = std::map<std::string, std::string>;
+using Words = std::vector<std::string>;
+
+core::SmoothedLine smooth(const core::LineFile& file, const core::SmootherParam& param,
+                          const std::string& path) {
+  try {
+    ProgressBar bar;
+    return core::smooth_line(core::make_editable(file.line), param, [&](double done) { bar.show(done); });
+  } catch (const std::runtime_error& fault) {
+    throw std::runtime_error(path + ": " + fault.what());
+  }
+}
+
+int run_smooth(const Words& words, const Remappings&) {
+  const CommandLine line(words, {"--bound", "--spacing", "--follow", "--max-curvature"});
+  const Words& files = line.files(2, 2, "IN and OUT");
+  core::SmootherParam param;
+  param.bound = line.number("--bound", param.bound, 0.01, 10.0);
+  param.spacing = line.number("--spacing", param.spacing, 0.2, 2.0);
+  param.follow = line.number("--follow", param.follow, 2.0, 50.0);
+  param.max_curvature = line.number("--max-curvature", param.max_curvature, 1e-3, 10.0);
+  core::LineFile file = load_line(files[0]);
+  const core::SmoothedLine result = smooth(file, param, files[0]);
+  if (!result.fault.empty()) throw std::runtime_error(files[0] + ": " + result.fault);
+  file.line = core::make_recorded(result.line);
+  save_line(files[1], file);
+  std::printf("%s: %zu points, %.2f m%s\n", files[1].c_str(), file.line.points.size(), result.length,
+              result.line.closed() ? ", a loop" : "");
+  std::printf("greatest deviation      %.3f m at s = %.1f m\n", result.greatest_deviation,
+              result.deviation_s);
+  std::printf("greatest curvature      %.5f 1/m at s = %.1f m\n", result.greatest_kappa, result.kappa_s);
+  std::printf("greatest curvature rate %.5f 1/m^2 at s = %.1f m\n", result.greatest_dkappa, result.dkappa_s);
+  return 0;
+}
+
+/// The number of faults.
+std::size_t check_file(const std::string& path, const core::LineFile& file,
+                       const core::LineCheckParam& param) {
+  const std::vector<core::LineFault> faults = core::check_line(file.line, file.header, param);
+  for (const core::LineFault& fault : faults) {
+    std::printf("%s: %s at point %zu, s = %.1f m: %s", path.c_str(), fault.kind.c_str(), fault.point, fault.s,
+                fault.what.c_str());
+    if (fault.count > 1) std::printf(" (the worst of %zu)", fault.count);
+    std::printf("\n");
+  }
+  if (faults.empty()) {
+    std::printf("%s: fit to be driven on, %zu points, %s, frame %s\n", path.c_str(), file.line.points.size(),
+                core::describe(file.header.reference).c_str(),
+                file.header.frame_id.empty() ? "not named" : ("'" + file.header.frame_id + "'").c_str());
+  }
+  return faults.size();
+}
+
+int run_check(const Words& words, const Remappings&) {
+  const CommandLine line(words, {"--max-gap", "--max-curvature", "--utm", "--origin", "--frame"});
+  const Words& files = line.files(1, 1000, "one or more files");
+  core::LineCheckParam param;
+  param.max_gap = line.number("--max-gap", param.max_gap, 0.01, 1e4);
+  param.max_curvature = line.number("--max-curvature", param.max_curvature, 1e-3, 10.0);
+  core::LineHeader expected{line.text("--frame"), reference_of(line)};
+  std::string expected_by = "this call";
+  std::size_t faults = 0;
+  for (const std::string& path : files) {
+    core::LineFile file;
+    try {
+      file = load_line(path);
+    } catch (const std::runtime_error& fault) {
+      std::printf("%s\n", fault.what());  // it names the file
+      ++faults;
+      continue;
+    }
+    if (const std::string why = core::conflict(expected, file.header); !why.empty()) {
+      std::printf("%s: zone: it does not fit to %s: %s\n", path.c_str(), expected_by.c_str(), why.c_str());
+      ++faults;
+    } else if (core::is_empty(expected)) {
+      expected = file.header;
+      expected_by = path;
+    }
+    core::LineFile read_by = file;
+    if (read_by.header.reference.projection == core::Projection::kNone)
+      read_by.header.reference = expected.reference;
+    faults += check_file(path, read_by, param);
+  }
+  if (faults > 0) std::printf("%zu faults\n", faults);
+  return faults == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+const Command kSmooth = {"smooth", "least curvature change within a bound",
+                         R"(Usage: navigation_line smooth IN OUT [OPTION]...
+
+Finds the line of least curvature change that stays beside the recording. The ends are kept, and a loop stays one.
+theta, kappa, dkappa and s are those of the result. If the bound cannot be held it says where, and writes nothing.
+
+  --bound D           [m] that the recorded points may lie beside the result (0.25)
+  --spacing D         [m] of the result's points (0.5)
+  --follow L          [m] bends much longer than this stay where they were recorded (30); with a wide bound for
+                      a noisy recording, 10 keeps curves from being cut
+  --max-curvature K   [1/m] that the vehicle can drive (0.25)
+
+Example: navigation_line smooth raw.smoothed lane.smoothed
+         navigation_line smooth gps.smoothed lane.smoothed --bound 1.0 --follow 10
+)",
+                         run_smooth};
+
+const Command kCheck = {"check", "is a file fit to be driven on?",
+                        R"(Usage: navigation_line check FILE... [OPTION]...
+
+Lists every fault with its place: gaps, kinks, duplicate points, s or a line that goes backward, curvature above the
+vehicle's limit, a line beside itself, coordinates that can't be of their zone, files that don't fit to each other.
+Exit code 0: none; 1: some.
+
+  --max-gap D              [m] between points (5)
+  --max-curvature K        [1/m] that the vehicle can drive (0.25)
+  --utm ZONE, --origin LAT,LON[,ALT], --frame NAME   what the files should be in
+
+Example: navigation_line check left.smoothed middle.smoothed right.smoothed --utm 50N
+)",
+                        run_check};
+
+}  // namespace relative_map

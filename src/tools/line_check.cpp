@@ -1,0 +1,230 @@
+#include "relative_map/tools/line_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include "relative_map/geometry/segment_index.hpp"
+#include "relative_map/tools/editable_line.hpp"
+
+namespace relative_map::core {
+
+namespace {
+
+constexpr double kMinSpacing = 1e-3;      // [m]
+constexpr double kMaxKink = 0.5;          // [rad] between chords
+constexpr double kMaxStepError = 0.05;    // of a chord's length, between s and the points
+constexpr double kMaxHeadingError = 0.1;  // [rad]
+constexpr double kBesideItself = 1.0;     // [m]
+constexpr double kApart = 30.0;           // [m] along the line, of what lies beside itself
+constexpr double kSampling = 2.0;         // [m] of the search for that
+constexpr double kFar = 1000.0;           // [m] no gap, but a jump to another zone or origin
+
+template <class... Parts>
+std::string sentence(const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(4);
+  (text << ... << parts);
+  return text.str();
+}
+
+/// Collects faults; of those in a row the worst one speaks.
+class Faults {
+ public:
+  void add(const std::string& kind, std::size_t point, double s, double size, const std::string& what,
+           std::size_t reach = 1) {
+    if (!list_.empty() && list_.back().kind == kind && point <= last_ + reach) {
+      ++list_.back().count;
+      if (size > worst_) list_.back().what = what;
+      worst_ = std::max(worst_, size);
+    } else {
+      list_.push_back({kind, point, s, 1, what});
+      worst_ = size;
+    }
+    last_ = point;
+  }
+  std::vector<LineFault> take() { return std::move(list_); }
+
+ private:
+  std::vector<LineFault> list_;
+  std::size_t last_ = 0;
+  double worst_ = 0.0;
+};
+
+/// A line that all coordinates of are finite.
+class Checker {
+ public:
+  Checker(const RecordedLine& line, const LineHeader& header, const LineCheckParam& param)
+      : recorded_(line), header_(header), param_(param) {
+    for (const LinePoint& point : line.points) {
+      s_.push_back(points_.empty() ? 0.0 : s_.back() + (position(point) - points_.back()).norm());
+      points_.push_back(position(point));
+    }
+  }
+
+  std::vector<LineFault> run() {
+    if (check_degrees()) return faults_.take();
+    check_place();
+    check_steps();
+    if (points_.size() < 3) return faults_.take();
+    const EditableLine line = make_editable(recorded_);
+    if (line.points.size() < 3) return faults_.take();
+    const PathPoints path = path_of(line);
+    check_kinks(line, path);
+    check_curvature(path);
+    check_headings(path);
+    check_overlap(line, path);
+    return faults_.take();
+  }
+
+ private:
+  Point2 position(const LinePoint& point) const {
+    return Point2(point.x, point.y) - Point2(recorded_.points[0].x, recorded_.points[0].y);
+  }
+
+  bool check_degrees() {
+    const bool degrees = header_.reference.projection == Projection::kNone && s_.back() > 0.0 &&
+                         s_.back() < 1.0 && points_.size() > 2;
+    if (degrees) {
+      faults_.add("zone", 0, 0.0, 0.0,
+                  sentence("the whole line is ", s_.back(),
+                           " m long: these are degrees, and not metres of a map frame"));
+    }
+    return degrees;
+  }
+
+  void check_place() {
+    const GeoReference& reference = header_.reference;
+    for (std::size_t i = 0; i < recorded_.points.size(); ++i) {
+      const double x = recorded_.points[i].x, y = recorded_.points[i].y;
+      if (reference.projection == Projection::kUtm && !(x > 0.0 && x < 1e6 && y > -1e7 && y < 2e7)) {
+        faults_.add("zone", i, s_[i], 0.0,
+                    sentence("x ", x, ", y ", y, " can't lie in ", describe(reference)));
+      }
+      if (reference.projection == Projection::kLocal && !(std::hypot(x, y) < 2e5)) {
+        faults_.add(
+            "zone", i, s_[i], 0.0,
+            sentence("it is ", std::hypot(x, y) / 1000.0, " km from the origin of ", describe(reference)));
+      }
+    }
+  }
+
+  void check_steps() {
+    if (s_.back() < kMinSpacing) faults_.add("short", 0, 0.0, 0.0, "all points are one");
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const double step = s_[i] - s_[i - 1];
+      if (step < kMinSpacing) faults_.add("duplicate", i, s_[i], 0.0, "it lies where the point before lies");
+    }
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const double step = s_[i] - s_[i - 1];
+      if (step <= param_.max_gap) continue;
+      const char* const why = step > kFar ? ": is it another zone or origin from here on?" : "";
+      faults_.add("gap", i, s_[i - 1], step, sentence("it is ", step, " m to the point before", why));
+    }
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const double given = recorded_.points[i].s - recorded_.points[i - 1].s, step = s_[i] - s_[i - 1];
+      if (step < kMinSpacing || !std::isfinite(given)) continue;
+      if (given <= 0.0) {
+        faults_.add("backward s", i, s_[i], -given, sentence("s goes back by ", -given, " m"));
+      } else if (std::abs(given - step) > kMaxStepError * step + kMinSpacing) {
+        faults_.add("wrong s", i, s_[i], std::abs(given - step),
+                    sentence("s grows by ", given, " m over ", step, " m"));
+      }
+    }
+  }
+
+  void check_kinks(const EditableLine& line, const PathPoints& path) {
+    for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+      const Point2 before = line.points[i] - line.points[i - 1], after = line.points[i + 1] - line.points[i];
+      const double turn = std::abs(std::atan2(cross(before, after), before.dot(after)));
+      if (turn > 0.5 * kPi) {
+        faults_.add("backward", i, path[i].s, turn, sentence("the line turns back by ", turn, " rad"));
+      } else if (turn > kMaxKink) {
+        faults_.add("kink", i, path[i].s, turn, sentence("the line turns by ", turn, " rad at once"));
+      }
+    }
+  }
+
+  void check_curvature(const PathPoints& path) {
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const double kappa = std::abs(path[i].kappa);
+      if (kappa <= param_.max_curvature) continue;
+      faults_.add("curvature", i, path[i].s, kappa,
+                  sentence("the curvature is ", kappa, " 1/m, and the vehicle's limit ", param_.max_curvature,
+                           " 1/m"),
+                  3);
+    }
+  }
+
+  /// As given, where no point was left out.
+  void check_headings(const PathPoints& path) {
+    if (path.size() < recorded_.points.size() - 1) return;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const double error = std::abs(angle_difference(recorded_.points[i].theta, path[i].theta));
+      if (!(error > kMaxHeadingError)) continue;
+      faults_.add("wrong theta", i, path[i].s, error,
+                  sentence("theta is ", recorded_.points[i].theta, " rad, but the points lead to ",
+                           path[i].theta, " rad"),
+                  5);
+    }
+  }
+
+  static double s_of_next(const PathPoints& path, std::size_t i) {
+    return path[std::min(i + 1, path.size() - 1)].s;
+  }
+
+  void check_overlap(const EditableLine& line, const PathPoints& path) {
+    const SegmentIndex index(path, line.ends);
+    const double length = length_of(line);
+    double next = 0.0;
+    for (std::size_t i = 0, step = 0; i < path.size(); ++i, ++step) {
+      if (path[i].s < next) continue;
+      next = path[i].s + kSampling;
+      for (const Foot& foot : index.passes(path, path[i].position, kBesideItself)) {
+        double apart = std::abs(path[foot.segment].s - path[i].s);
+        if (line.closed()) apart = std::min(apart, length - apart);
+        const bool same_way = path[foot.segment].direction.dot(path[i].direction) > 0.9;
+        const bool in_gap = s_of_next(path, foot.segment) - path[foot.segment].s > param_.max_gap;
+        if (in_gap || apart < kApart || !same_way || path[foot.segment].s > path[i].s) continue;
+        faults_.add(
+            "overlap", i, path[i].s, 0.0,
+            sentence("the line lies beside itself: it has been here at s = ", path[foot.segment].s, " m"),
+            step + 1);
+        step = 0;
+        break;
+      }
+    }
+  }
+
+  const RecordedLine& recorded_;
+  const LineHeader& header_;
+  const LineCheckParam& param_;
+  Polyline points_;
+  std::vector<double> s_;
+  Faults faults_;
+};
+
+}  // namespace
+
+std::vector<std::string> line_fault_kinds() {
+  return {"not finite", "zone",     "short", "duplicate", "gap",         "backward s",
+          "wrong s",    "backward", "kink",  "curvature", "wrong theta", "overlap"};
+}
+
+std::vector<LineFault> check_line(const RecordedLine& line, const LineHeader& header,
+                                  const LineCheckParam& param) {
+  Faults faults;
+  if (line.points.size() < 2) {
+    faults.add("short", 0, 0.0, 0.0, "it has fewer than two points");
+    return faults.take();
+  }
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    if (std::isfinite(line.points[i].x) && std::isfinite(line.points[i].y)) continue;
+    faults.add("not finite", i, 0.0, 0.0, "x or y is not finite");
+  }
+  std::vector<LineFault> not_finite = faults.take();
+  return not_finite.empty() ? Checker(line, header, param).run() : not_finite;
+}
+
+}  // namespace relative_map::core

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""`navigation_line publish` for those that come later, and `record --live` from what is published."""
+
+import json
+import signal
+import subprocess
+import threading
+
+import rospy
+import rostest
+from nav_msgs.msg import Odometry
+from relative_map.msg import NavigationInfo
+
+from navigation_line_support import ToolTest, odometry, smoothed, straight, way
+from node_support import wait_for
+
+
+class NavigationLineLive(ToolTest):
+    def start(self, *words):
+        process = subprocess.Popen(self.command(*words), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                   universal_newlines=True)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.kill)
+        return process
+
+    def publish(self, *words):
+        """What a subscriber that comes late receives."""
+        process = self.start('publish', *words)
+        while 'runs on for those that come later' not in process.stdout.readline():
+            self.assertIsNone(process.poll())
+        message = rospy.wait_for_message('navigation', NavigationInfo, timeout=20.0)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(20.0), 0)
+        return message
+
+    def test_publishes_latched_with_priorities_by_order(self):
+        self.write('a.smoothed', '{"header": {"frame_id": "world"}}\n' + smoothed(straight(100.0)))
+        self.write('b.smoothed', smoothed(straight(100.0, y=3.5)))
+        message = self.publish('a.smoothed', 'b.smoothed')
+        self.assertEqual(message.header.frame_id, 'world')
+        self.assertEqual([(line.path.name, line.path_priority) for line in message.navigation_path], [('a', 0), ('b', 1)])
+        self.assertEqual(len(message.navigation_path[0].path.path_point), 201)
+        message = self.publish('a.smoothed', 'b.smoothed', '--priority', '3,2', '--by-curvature')
+        self.assertEqual([line.path_priority for line in message.navigation_path], [3, 2])
+        self.assertLess(len(message.navigation_path[0].path.path_point), 40)
+
+    def test_records_live_until_interrupted(self):
+        publisher = rospy.Publisher('localization', Odometry, queue_size=1000)
+        process = self.start('record', '--live', 'line.smoothed')
+        wait_for(lambda: publisher.get_num_connections() > 0, 'subscriber')
+        stop = threading.Event()
+        self.addCleanup(stop.set)
+        start = rospy.Time.now()
+        for step in range(400):
+            publisher.publish(odometry(start + rospy.Duration(step / 20.0), *way(step)))
+            rospy.sleep(0.005)
+        rospy.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(20.0), 0, process.stdout.read())
+        points = [json.loads(line) for line in self.read('line.smoothed').splitlines()][1:]
+        self.assertGreater(len(points), 300)
+
+    def test_nothing_to_record_is_said(self):
+        run = self.run_tool('record', '--live', 'line.smoothed', '--topic', 'nobody', '--duration', '1', master=True)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn('nothing that can be used was published on nobody', run.stderr)
+        self.assertEqual(self.contents(), {})
+
+
+if __name__ == '__main__':
+    rospy.init_node('navigation_line_live_test')
+    rostest.rosrun('relative_map', 'navigation_line_live', NavigationLineLive)

@@ -1,0 +1,314 @@
+// The estimator, seen through the pipeline: drives in closed form with one error at a time.
+
+#include "relative_map/pipeline/lane_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/scene.hpp"
+
+namespace relative_map::core {
+namespace {
+
+using test::Scene;
+
+constexpr double kHalfWidth = 1.75;
+constexpr double kStep = 1.0;  // [m] driven in a tick
+
+const Lane& current(const RelativeMap& map) {
+  for (const Lane& lane : map.lanes) {
+    if (lane.id == map.current_lane_id) return lane;
+  }
+  throw std::out_of_range("no current lane");
+}
+
+double y_at(const RelativeMap& map, double x) {
+  const PathPoints& path = current(map).path;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Point2 &a = path[i - 1].position, &b = path[i].position;
+    if (b.x() >= x) return a.y() + (x - a.x()) / (b.x() - a.x()) * (b.y() - a.y());
+  }
+  throw std::out_of_range("the lane ends before");
+}
+
+/// A vehicle on a straight line along x, its true pose, and what sensors make of it.
+class StraightDrive {
+ public:
+  explicit StraightDrive(const PipelineConfig& config = PipelineConfig())
+      : scene({test::recording(test::straight(Pose2(), 3000.0, 1.0))}, config) {}
+
+  /// The lane's paint from the true pose, exactly.
+  LaneMarkers paint() const {
+    const double slope = -std::tan(heading);
+    LaneMarkers markers = test::lane_about({-y / std::cos(heading), slope, 0.0, 0.0}, half_width);
+    return markers;
+  }
+  RelativeMap tick(const LaneMarkers& markers) {
+    scene.see(markers);
+    return tick();
+  }
+  RelativeMap tick() {
+    x += kStep;
+    return scene.at(Pose2(Point2(x, y) + bias, heading + heading_bias));
+  }
+  RelativeMap drive(int ticks) {
+    RelativeMap map;
+    for (int i = 0; i < ticks; ++i) map = tick(paint());
+    return map;
+  }
+  /// [m] left positive, at `ahead` [m].
+  double error(const RelativeMap& map, double ahead) const {
+    return y_at(map, ahead) - (-y / std::cos(heading) - std::tan(heading) * ahead);
+  }
+
+  Scene scene;
+  double x = 10.0, y = 0.2, heading = 0.0;
+  double half_width = kHalfWidth;
+  Point2 bias = Point2::Zero();
+  double heading_bias = 0.0;
+};
+
+TEST(LaneEstimator, TakesLocalizationsOffsetOutWithinASecond) {
+  StraightDrive drive;
+  drive.bias = {0.0, 0.8};
+  const RelativeMap map = drive.drive(10);
+  EXPECT_EQ(map.fusion.source, Source::kFused);
+  EXPECT_EQ(map.fusion.method, "estimator");
+  for (const double ahead : {0.0, 10.0, 30.0}) EXPECT_NEAR(drive.error(map, ahead), 0.0, 0.05) << ahead;
+  EXPECT_NEAR(map.fusion.lateral_offset.value, 0.8, 0.1);
+  EXPECT_GT(map.fusion.lateral_offset.stddev, 0.0);
+  EXPECT_LT(map.fusion.lateral_offset.stddev, 0.3);
+}
+
+TEST(LaneEstimator, TakesLocalizationsHeadingErrorOut) {
+  StraightDrive drive;
+  drive.heading_bias = 0.01;
+  const RelativeMap map = drive.drive(30);
+  for (const double ahead : {0.0, 10.0, 30.0, 45.0}) EXPECT_NEAR(drive.error(map, ahead), 0.0, 0.06) << ahead;
+  EXPECT_NEAR(map.fusion.heading_offset.value, 0.01, 0.003);
+}
+
+TEST(LaneEstimator, LearnsTheLanesWidth) {
+  StraightDrive drive;
+  drive.half_width = 1.6;
+  const RelativeMap map = drive.drive(20);
+  EXPECT_NEAR(map.fusion.left_half_width.value, 1.6, 0.02);
+  EXPECT_NEAR(map.fusion.right_half_width.value, 1.6, 0.02);
+  for (const WidthSample& sample : current(map).left_samples)
+    EXPECT_NEAR(sample.width, 1.6, 0.03) << sample.s;
+}
+
+TEST(LaneEstimator, OneSideIsEnough) {
+  StraightDrive drive;
+  drive.bias = {0.0, -0.5};
+  drive.drive(10);
+  RelativeMap map;
+  for (int i = 0; i < 50; ++i) {
+    LaneMarkers markers = drive.paint();
+    markers.right.quality = 0.0;
+    drive.bias.y() += 0.01;
+    map = drive.tick(markers);
+  }
+  EXPECT_EQ(map.fusion.source, Source::kFused);
+  EXPECT_NEAR(drive.error(map, 10.0), 0.0, 0.05);
+}
+
+class Outlier : public testing::TestWithParam<double> {};
+
+TEST_P(Outlier, OnOneSideIsLeftOut) {
+  StraightDrive drive;
+  drive.bias = {0.0, 0.3};
+  drive.drive(20);
+  for (int i = 0; i < 10; ++i) {
+    LaneMarkers markers = drive.paint();
+    markers.left.cubic.c0 += GetParam();
+    const RelativeMap map = drive.tick(markers);
+    EXPECT_NEAR(drive.error(map, 10.0), 0.0, 0.03);
+    EXPECT_TRUE(drive.scene.remarked("left is ignored"));
+  }
+}
+
+TEST_P(Outlier, OnBothSidesIsLeftOut) {
+  StraightDrive drive;
+  drive.drive(20);
+  for (int i = 0; i < 5; ++i) {
+    LaneMarkers markers = drive.paint();
+    markers.left.cubic.c0 += GetParam();
+    markers.right.cubic.c0 += GetParam();
+    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 0.03);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Jumps, Outlier, testing::Values(-3.5, -2.5, -1.5, 1.5, 2.5, 3.5));
+
+TEST(LaneEstimator, PaintOfAnotherLaneDoesNotPullTheLaneOffItsLine) {
+  StraightDrive drive;
+  for (int i = 0; i < 100; ++i) {
+    LaneMarkers markers = drive.paint();
+    markers.left.cubic.c0 += 3.5;
+    markers.right.cubic.c0 += 3.5;
+    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 1e-9);
+  }
+  EXPECT_TRUE(drive.scene.remarked("is ignored"));
+}
+
+TEST(LaneEstimator, MirroredPaintDoesNotPullTheLaneOffItsLine) {
+  StraightDrive drive;
+  for (int i = 0; i < 50; ++i) {
+    LaneMarkers markers = drive.paint();
+    std::swap(markers.left, markers.right);
+    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 1e-9);
+  }
+  EXPECT_TRUE(drive.scene.remarked("left of right"));
+}
+
+TEST(LaneEstimator, PaintFromTheFutureIsNotBelieved) {
+  StraightDrive drive;
+  drive.bias = {0.0, 0.5};
+  for (int i = 0; i < 20; ++i) {
+    LaneMarkers markers = drive.paint();
+    markers.stamp = drive.scene.now() + from_seconds(5.0);
+    drive.scene.pipeline().set_lane_markers(markers);
+    EXPECT_NEAR(drive.error(drive.tick(), 10.0), -0.5, 1e-9);
+  }
+  EXPECT_TRUE(drive.scene.remarked("no pose is known"));
+}
+
+TEST(LaneEstimator, FrozenPaintIsFoundOut) {
+  StraightDrive drive;
+  const LaneMarkers frozen = drive.paint();
+  double worst = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const double phase = 2.0 * kPi * (drive.x - 10.0) / 60.0;
+    drive.y = 0.2 + 0.5 * std::sin(phase);
+    drive.heading = std::atan(0.5 * 2.0 * kPi / 60.0 * std::cos(phase));
+    const RelativeMap map = drive.tick(frozen);
+    if (i > 60) worst = std::max(worst, std::abs(drive.error(map, 10.0)));
+  }
+  EXPECT_TRUE(drive.scene.remarked("frozen"));
+  EXPECT_LT(worst, 0.05);  // localization is exact here
+}
+
+TEST(LaneEstimator, AJumpOfLocalizationDoesNotMoveTheLane) {
+  StraightDrive drive;
+  drive.drive(20);
+  drive.bias = {0.3, 1.0};
+  for (int i = 0; i < 30; ++i) EXPECT_NEAR(drive.error(drive.drive(1), 10.0), 0.0, 0.06) << i;
+}
+
+TEST(LaneEstimator, WithoutPaintTheOffsetDecaysAtItsRate) {
+  PipelineConfig config;
+  config.lane_fusion.decay_time = 5.0;
+  StraightDrive drive(config);
+  drive.bias = {0.0, 1.0};
+  drive.drive(30);
+  RelativeMap map;
+  for (int i = 0; i < 9; ++i) map = drive.tick();
+  EXPECT_NEAR(map.fusion.lateral_offset.value, 1.0, 0.05);  // held for a second
+  for (int i = 0; i < 50; ++i) map = drive.tick();
+  EXPECT_NEAR(map.fusion.lateral_offset.value, std::exp(-1.0), 0.05);
+  EXPECT_EQ(map.fusion.source, Source::kNavigationLine);
+  EXPECT_NEAR(drive.error(map, 10.0), -1.0 + std::exp(-1.0), 0.06);
+}
+
+TEST(LaneEstimator, ALaneThatWidensToOneSideKeepsItsCenter) {
+  StraightDrive drive;
+  drive.drive(20);
+  for (int i = 0; i < 60; ++i) {
+    LaneMarkers markers = drive.paint();
+    markers.right.cubic.c0 -= 0.05 * i;                                   // up to 6.5 m of lane
+    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 0.15) << i;  // of 1.5 m, were it the middle
+  }
+}
+
+TEST(LaneEstimator, AnOffsetBeyondTheLimitIsNotBelieved) {
+  PipelineConfig config;
+  config.lane_fusion.max_offset = 0.5;
+  StraightDrive drive(config);
+  bool told = false;
+  for (int i = 0; i < 100; ++i) {
+    drive.bias.y() = 0.01 * i;
+    const RelativeMap map = drive.tick(drive.paint());
+    EXPECT_LT(std::abs(map.fusion.lateral_offset.value), 0.55);
+    told = told || drive.scene.remarked("not believed");
+  }
+  EXPECT_TRUE(told);
+}
+
+TEST(LaneEstimator, ForgetsWhenTheVehicleIsPutElsewhere) {
+  StraightDrive drive;
+  drive.bias = {0.0, 0.8};
+  drive.drive(20);
+  drive.x += 500.0;
+  drive.bias = Point2::Zero();
+  const RelativeMap map = drive.tick();
+  EXPECT_NEAR(drive.error(map, 10.0), 0.0, 1e-9);
+  EXPECT_EQ(map.fusion.source, Source::kNavigationLine);
+}
+
+TEST(LaneEstimator, TellsHowFarAlongTheLineTheVehicleIsWhereTheLineBends) {
+  // Straight, then an arc that the paint shows 2 m sooner than localization expects it.
+  Polyline points = test::straight(Pose2(), 100.0, 1.0);
+  const Polyline bend = test::arc(Pose2(Point2(100.0, 0.0), 0.0), 0.02, 80.0, 1.0);
+  points.insert(points.end(), bend.begin() + 1, bend.end());
+  Scene scene({test::recording(points)});
+  const auto on_road = [](double s) {
+    return s < 100.0 ? Pose2(Point2(s, 0.0), 0.0)
+                     : test::along_arc(Pose2(Point2(100.0, 0.0), 0.0), 0.02, s - 100.0);
+  };
+  RelativeMap map;
+  for (double s = 20.0; s < 150.0; s += 1.0) {
+    const Pose2 truth = on_road(s);
+    LaneMarkers markers;
+    for (const double side : {1.0, -1.0}) {
+      Eigen::MatrixX4d powers(21, 4);
+      Eigen::VectorXd y(21);
+      for (int i = 0; i <= 20; ++i) {
+        const Pose2 ahead = on_road(s + i);
+        const Point2 p = truth.to_local(ahead.position() + side * kHalfWidth * left_of(ahead.forward()));
+        powers.row(i) << 1.0, p.x(), p.x() * p.x(), p.x() * p.x() * p.x();
+        y[i] = p.y();
+      }
+      const Eigen::Vector4d c = powers.colPivHouseholderQr().solve(y);
+      (side > 0 ? markers.left : markers.right) = test::marker({c[0], c[1], c[2], c[3]}, 18.0);
+    }
+    scene.see(markers);
+    const Pose2 localized(truth.position() - 2.0 * Point2(1.0, 0.0), truth.heading());  // 2 m too far back
+    map = scene.at(localized);
+  }
+  const Point2 along = on_road(149.0).forward();
+  EXPECT_NEAR(map.fusion.longitudinal_offset.value, 2.0 * along.x(), 0.4);
+  EXPECT_LT(map.fusion.longitudinal_offset.stddev, 0.5);
+}
+
+TEST(LaneEstimator, ALaneChangeMovesTheStateToTheNeighbourWithoutAWobble) {
+  Scene scene(test::three_straight_lines());
+  const Point2 bias(0.0, 0.4);
+  for (int i = 0; i < 150; ++i) {
+    const double t = std::clamp((i - 40) / 50.0, 0.0, 1.0), y = 3.5 * t * t * (3.0 - 2.0 * t);
+    const double slope = 3.5 * 6.0 * t * (1.0 - t) / 50.0;
+    const double lane_y = y < 1.75 ? 0.0 : 3.5;  // which lane the camera takes for the vehicle's own
+    const double heading = std::atan(slope);
+    scene.see(test::lane_about({(lane_y - y) / std::cos(heading), -slope, 0.0, 0.0},
+                               kHalfWidth / std::cos(heading)));
+    const RelativeMap map = scene.at(Pose2(Point2(20.0 + i, y) + bias, heading));
+    if (i < 10) continue;
+    const double lane = map.current_lane_id == "middle" ? 0.0 : 3.5;
+    EXPECT_NEAR(y_at(map, 10.0), (lane - y) / std::cos(heading) - slope * 10.0, 0.06) << i;
+  }
+}
+
+TEST(LaneEstimator, PredictsTheMapToTheTick) {
+  PipelineConfig config;
+  config.predict_to_tick = true;
+  Scene scene(test::three_straight_lines(), config);
+  scene.at(Pose2(Point2(50.0, 0.0), 0.0), 10.0);
+  scene.wait(0.2);
+  const RelativeMap map = scene.tick();
+  EXPECT_EQ(map.stamp, scene.now());
+  EXPECT_NEAR(current(map).remaining_distance, 600.0 - 52.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace relative_map::core
