@@ -8,6 +8,7 @@ namespace relative_map::core {
 namespace {
 
 constexpr std::size_t kMostWaiting = 50;  // images: a tick takes all of them
+constexpr double kMirrored = 1.0;         // [m] right of left: not one of them is wrong, but both
 constexpr double kFrozenReach = 15.0;     // [m] ahead, where odometry still knows where paint must be
 constexpr double kFrozenError = 0.3;      // [m] that paint seems to have moved by
 
@@ -97,7 +98,7 @@ std::optional<ImageQueue::Image> ImageQueue::look_at(const LaneMarkers& markers,
     remarks.push_back("lane markers: left: " + *left_fault + "; right: " + *right_fault);
     return std::nullopt;
   }
-  if (!left_fault && !right_fault && markers.left.cubic.c0 <= markers.right.cubic.c0) {
+  if (!left_fault && !right_fault && markers.left.cubic.c0 < markers.right.cubic.c0 - kMirrored) {
     std::ostringstream reason;
     reason << "lane markers: they are " << markers.left.cubic.c0 - markers.right.cubic.c0
            << " m apart, left of right positive: no lane";
@@ -109,6 +110,12 @@ std::optional<ImageQueue::Image> ImageQueue::look_at(const LaneMarkers& markers,
   image.sides.unchanged = unchanged;
   if (!left_fault) image.sides.left = sample_paint(markers.left, base_from_sensor);
   if (!right_fault) image.sides.right = sample_paint(markers.right, base_from_sensor);
+  const auto nearest = [&](const std::vector<LaneMarker>& beyond) -> std::optional<PaintSamples> {
+    if (beyond.empty() || fault_of(beyond.front(), config.navigation_lane)) return std::nullopt;
+    return sample_paint(beyond.front(), base_from_sensor);
+  };
+  image.sides.next_left = nearest(markers.next_left);
+  image.sides.next_right = nearest(markers.next_right);
   return image;
 }
 

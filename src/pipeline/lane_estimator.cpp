@@ -24,13 +24,15 @@ constexpr double kSlipWalk = 0.02;           // [m] of odometry, sideways
 constexpr double kSpeedWalk = 0.05;          // [m] of odometry, along
 constexpr double kSpeedScale = 0.01;         // [-] of the speed, besides
 
-constexpr double kJumpDistance = 40.0;   // squared, in standard deviations: localization has jumped
-constexpr double kRecording = 0.4;       // [m] of one line against another
-constexpr double kOtherWidth = 0.1;      // [m] of one lane against another
-constexpr double kMaxHeadingBias = 0.1;  // [rad] of localization: no estimate beyond it is one
-constexpr double kHoldTime = 1.0;        // [s] without paint until the estimate starts to decay
-constexpr double kForgetTime = 60.0;     // [s] without paint until nothing is left worth having
-constexpr double kBehind = 1.5;          // knots behind the vehicle
+constexpr double kJumpDistance = 40.0;       // squared, in standard deviations: localization has jumped
+constexpr double kRecording = 0.4;           // [m] of one line against another
+constexpr double kOtherWidth = 0.1;          // [m] of one lane against another
+constexpr double kMaxHeadingBias = 0.1;      // [rad] of localization: no estimate beyond it is one
+constexpr double kLongestGap = 1.0;          // [s] between poses that odometry bridges
+constexpr double kHoldTime = 1.0;            // [s] without paint until the estimate starts to decay
+constexpr double kForgetTime = 60.0;         // [s] without paint until nothing is left worth having
+constexpr double kNarrowestHalfWidth = 1.0;  // [m] of a lane beside
+constexpr double kBehind = 1.5;              // knots behind the vehicle
 
 using Vector3 = Eigen::Vector3d;
 
@@ -72,8 +74,10 @@ void LaneEstimator::give_up(const VehicleState& localized, const std::string& wh
 void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& param) {
   watch_.max_offset = param.max_offset;
   const bool forgotten = last_paint_ && to_seconds(localized.stamp - *last_paint_) > kForgetTime;
+  const bool gap = last_ && to_seconds(localized.stamp - last_->stamp) > kLongestGap;
+  const bool broken = !filter_.state().allFinite() || !filter_.covariance().allFinite();
   // Without paint there is nothing to tell bias from place by.
-  if (!last_ || !informed() || forgotten || has_jumped(*last_, localized) ||
+  if (!last_ || !informed() || forgotten || gap || broken || has_jumped(*last_, localized) ||
       localized.stamp <= last_->stamp) {
     start(localized);
     return;
@@ -160,6 +164,7 @@ void LaneEstimator::follow_line(const NavigationLine& line, const LineProjection
   Filter::Covariance& p = filter_.covariance();
   if (line.id != line_id_ || std::abs(moved) > kKnots * kSpacing) {
     line_id_ = line.id;
+    next_left_ = next_right_ = NextBorder();
     line_s_ = projection.s;
     first_knot_s_ = line_s_ - kBehind * kSpacing;
     x.tail<kKnots>().setZero();
@@ -210,10 +215,10 @@ VehicleState LaneEstimator::corrected(const VehicleState& localized) const {
 }
 
 bool LaneEstimator::apply(const NavigationLine& line, const LineProjection& projection,
-                          LanePath& lane) const {
+                          double least_half_width, LanePath& lane) const {
   if (!informed() || lane.id != line_id_) return false;
-  lane.left_half_width = filter_.state()[kLeft];
-  lane.right_half_width = filter_.state()[kRight];
+  lane.left_half_width = std::max(least_half_width, filter_.state()[kLeft]);
+  lane.right_half_width = std::max(least_half_width, filter_.state()[kRight]);
   lane.seen = {lane.left_half_width, lane.right_half_width, lane.s_at_vehicle + paint_range_};
   const OffsetProfile profile(filter_.state().tail<OffsetProfile::kKnots>());
   const double start =
@@ -225,6 +230,32 @@ bool LaneEstimator::apply(const NavigationLine& line, const LineProjection& proj
   compute_geometry(lane.points);
   locate_vehicle(lane);
   return true;
+}
+
+void LaneEstimator::apply_beside(std::vector<LanePath>& lanes, std::size_t current) const {
+  const LanePath& lane = lanes[current];
+  if (!informed() || lane.id != line_id_ || !lane.seen) return;
+  const auto far_half_width = [&](const NextBorder& border, const LanePath& beside) {
+    return border.distance.state()[0] - std::abs(beside.l - lane.l);
+  };
+  const auto tell = [&](LanePath& beside, double half_width, double& own) {
+    if (half_width < kNarrowestHalfWidth) return std::optional<double>();
+    own = half_width;
+    beside.seen = SeenHalfWidths{{}, {}, beside.s_at_vehicle + paint_range_};
+    return std::optional<double>(half_width);
+  };
+  if (next_left_.known && current > 0) {
+    LanePath& left = lanes[current - 1];
+    if (const auto width = tell(left, far_half_width(next_left_, left), left.left_half_width)) {
+      left.seen->left = width;
+    }
+  }
+  if (next_right_.known && current + 1 < lanes.size()) {
+    LanePath& right = lanes[current + 1];
+    if (const auto width = tell(right, far_half_width(next_right_, right), right.right_half_width)) {
+      right.seen->right = width;
+    }
+  }
 }
 
 FusionState LaneEstimator::state(const LineProjection& projection, double heading) const {

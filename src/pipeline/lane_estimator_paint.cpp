@@ -22,6 +22,9 @@ constexpr double kMaxSurprise = 1.5;      // [m] that paint may be off by: beyon
 constexpr double kSameSurprise = 0.5;     // [m] between offsets that say the same
 constexpr double kDoubtTime = 2.5;        // [s] in which none of the paint counted: the estimate is doubted,
 constexpr double kLostTime = 5.0;         // [s] ... and given up
+constexpr double kNarrowestNext = 2.0;    // [m] of a lane beyond, and ...
+constexpr double kWidestNext = 6.0;       // [m] ... its widest
+constexpr double kNextWalk = 0.02;        // [m] of its border from image to image
 constexpr double kUnseen = 1e4;           // [m^2] variance of a sample that has no line beside it
 constexpr double kShapeReach = 30.0;  // [m] ahead, where a change of the line's direction is looked for ...
 const Eigen::Vector2d kShapeChange(0.03,
@@ -153,7 +156,11 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
       ignored.push_back(reason.str());
     }
   }
-  if (any) {
+  if (!filter_.state().allFinite()) {
+    start(*last_);
+  } else if (any) {
+    see_next(sides.next_left, kLeft, line, projection.nearest_vertex, next_left_);
+    see_next(sides.next_right, kRight, line, projection.nearest_vertex, next_right_);
     last_paint_ = stamp;
     surprise_.reset();
     refused_since_.reset();
@@ -163,6 +170,29 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
     reconsider(seen, stamp);
   }
   return ignored;
+}
+
+void LaneEstimator::see_next(const std::optional<PaintSamples>& paint, Index side, const NavigationLine& line,
+                             std::size_t vertex, NextBorder& border) {
+  using Scalar = Eigen::Matrix<double, 1, 1>;
+  border.type = BoundaryType::kUnknown;
+  const auto measurement = paint ? measure(*paint, side, line, vertex) : std::nullopt;
+  if (!measurement) return;
+  // Measured as if it were the lane's own border: what it is off by is the width of the lane beyond.
+  const double sign = side == kLeft ? 1.0 : -1.0, own = filter_.state()[side];
+  const double distance = own + sign * measurement->mean_offset();
+  const auto weights = measurement->weights();
+  const Scalar noise = weights.transpose() * measurement->covariance * weights;
+  if (distance < own + kNarrowestNext || distance > own + kWidestNext) return;
+  if (border.known && std::abs(distance - border.distance.state()[0]) > kSameSurprise) {
+    border.known = false;  // it goes elsewhere: start anew with the next image
+    return;
+  }
+  if (!border.known) border.distance = KalmanFilter<1>(Scalar::Constant(distance), noise);
+  border.distance.predict(Scalar::Ones(), Scalar::Constant(kNextWalk * kNextWalk));
+  border.distance.correct(Scalar::Constant(distance - border.distance.state()[0]), Scalar::Ones(), noise);
+  border.known = true;
+  border.type = paint->type;
 }
 
 /// The first paint must not be an outlier's: both sides that fit together, or one for a while.

@@ -131,8 +131,9 @@ double width_of_left(const LanePath& left, const LanePath& right, double spacing
                      double right_s) {
   const double middle = 0.5 * spacing;
   double width = middle;
-  if (left.seen) width += seen_share(*left.seen, left_s) * (left.seen->right - middle);
-  if (right.seen) width -= seen_share(*right.seen, right_s) * (right.seen->left - middle);
+  if (left.seen && left.seen->right) width += seen_share(*left.seen, left_s) * (*left.seen->right - middle);
+  if (right.seen && right.seen->left)
+    width -= seen_share(*right.seen, right_s) * (*right.seen->left - middle);
   return std::clamp(width, kLeastShare * spacing, (1.0 - kLeastShare) * spacing);
 }
 

@@ -68,8 +68,18 @@ void add_paint(RelativeMap& map, std::size_t current, const SeenPaint& paint) {
   };
   add(lane.left_boundary, paint.left);
   add(lane.right_boundary, paint.right);
-  if (!lane.left_neighbor_id.empty()) add(map.lanes[current - 1].right_boundary, paint.left);
-  if (!lane.right_neighbor_id.empty()) add(map.lanes[current + 1].left_boundary, paint.right);
+  if (!lane.left_neighbor_id.empty()) {
+    Lane& left = map.lanes[current - 1];
+    add(left.right_boundary, paint.left);
+    add(left.left_boundary, paint.next_left);
+    if (!left.left_neighbor_id.empty()) add(map.lanes[current - 2].right_boundary, paint.next_left);
+  }
+  if (!lane.right_neighbor_id.empty()) {
+    Lane& right = map.lanes[current + 1];
+    add(right.left_boundary, paint.right);
+    add(right.right_boundary, paint.next_right);
+    if (!right.right_neighbor_id.empty()) add(map.lanes[current + 2].left_boundary, paint.next_right);
+  }
 }
 
 /// Whether the headings of a path are those of its points, of the circles through three of them.

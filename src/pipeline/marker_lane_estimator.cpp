@@ -16,12 +16,12 @@ constexpr double kSlope0 = 0.3;           // [-]
 constexpr double kCurvature0 = 0.05;      // [1/m]
 constexpr double kCurvatureRate0 = 2e-3;  // [1/m^2]
 // ... and of the random walks, by the root of the way [m] or the time [s].
-constexpr double kCurvatureRateWalk = 4e-5;    // [1/m^2] by way
-constexpr double kCurvatureWalk = 2e-4;        // [1/m] by way
-constexpr double kHeadingWalk = 0.002;         // [rad] by time
-constexpr double kSlipWalk = 0.02;             // [m] by time
-constexpr double kCurvatureRateLength = 60.0;  // [m] over which a change of curvature ends
-constexpr double kGate = 30.0;                 // squared, in standard deviations
+constexpr double kCurvatureRateWalk = 4e-5;  // [1/m^2] by way
+constexpr double kCurvatureWalk = 2e-4;      // [1/m] by way
+constexpr double kHeadingWalk = 0.002;       // [rad] by time
+constexpr double kSlipWalk = 0.02;           // [m] by time
+constexpr double kLongestGap = 1.0;          // [s] between poses that odometry bridges
+constexpr double kGate = 30.0;               // squared, in standard deviations
 
 }  // namespace
 
@@ -36,7 +36,9 @@ void MarkerLaneEstimator::start(double half_width) {
 }
 
 void MarkerLaneEstimator::move(const VehicleState& to) {
-  if (last_ && (has_jumped(*last_, to) || to.stamp <= last_->stamp)) reset();
+  const bool broken = !filter_.state().allFinite() || !filter_.covariance().allFinite();
+  const bool gap = last_ && to_seconds(to.stamp - last_->stamp) > kLongestGap;
+  if (last_ && (has_jumped(*last_, to) || to.stamp <= last_->stamp || gap || broken)) reset();
   if (!last_ || !last_paint_) {
     last_ = to;
     return;
@@ -48,7 +50,7 @@ void MarkerLaneEstimator::move(const VehicleState& to) {
   f.block<4, 4>(0, 0) << 1.0, d, d * d / 2.0, d * d * d / 6.0,  //
       0.0, 1.0, d, d * d / 2.0,                                 //
       0.0, 0.0, 1.0, d,                                         //
-      0.0, 0.0, 0.0, std::exp(-std::abs(d) / kCurvatureRateLength);
+      0.0, 0.0, 0.0, 1.0;
   const double way = std::abs(d);
   q(kOffset, kOffset) = kSlipWalk * kSlipWalk * dt;
   q(kSlope, kSlope) = kHeadingWalk * kHeadingWalk * dt;
@@ -113,6 +115,7 @@ std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double
     any = true;
   }
   if (any) last_paint_ = stamp;
+  if (!filter_.state().allFinite()) reset();
   return ignored;
 }
 

@@ -56,14 +56,14 @@ std::optional<std::string> fault_of(const LaneMarker& marker, const NavigationLa
 PaintSamples sample_paint(const LaneMarker& marker, const Pose2& base_from_sensor) {
   PaintSamples samples;
   samples.type = marker.type;
-  samples.from = marker.longitude_start;
-  samples.to = marker.view_range;
   Eigen::Matrix<double, kPaintSamples, 1> x;
   for (int i = 0; i < kPaintSamples; ++i) {
-    x[i] = samples.from + (samples.to - samples.from) * i / (kPaintSamples - 1);
+    x[i] = marker.longitude_start + (marker.view_range - marker.longitude_start) * i / (kPaintSamples - 1);
     samples.points[static_cast<std::size_t>(i)] =
         base_from_sensor.to_parent(Point2(x[i], marker.cubic.value(x[i])));
   }
+  samples.from = samples.points.front().x();
+  samples.to = samples.points.back().x();
   const Eigen::Matrix<double, kPaintSamples, 1> one = x.Ones(), x2 = x.cwiseAbs2();
   samples.covariance = kOffset * kOffset * one * one.transpose() + kSlope * kSlope * x * x.transpose() +
                        kCurvature * kCurvature * x2 * x2.transpose();

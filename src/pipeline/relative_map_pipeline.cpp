@@ -92,8 +92,11 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
   const auto state = vehicle_state(now);
   if (const auto* status = std::get_if<Status>(&state)) return *status;
   const VehicleState& vehicle = std::get<VehicleState>(state);
-  return config_->lane_fusion.method == "estimator" ? build_estimated(vehicle, now)
-                                                    : build_with_fixed_weight(predicted(vehicle, now), now);
+  // Weight 0 is the line alone, whatever the method.
+  const NavigationLaneParam& lane = config_->navigation_lane;
+  const bool estimated = config_->lane_fusion.method == "estimator" &&
+                         (lane.lane_marker_weight > 0.0 || lane.lane_source == LaneSource::kPerception);
+  return estimated ? build_estimated(vehicle, now) : build_with_fixed_weight(predicted(vehicle, now), now);
 }
 
 VehicleState RelativeMapPipeline::predicted(VehicleState vehicle, Time now) const {

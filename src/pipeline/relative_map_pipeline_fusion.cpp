@@ -45,8 +45,10 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build_estimated(const Veh
   const TrackedLine& current_line =
       *std::find_if(lines.begin(), lines.end(),
                     [&](const TrackedLine& tracked) { return tracked.line->id == lanes[current].id; });
-  if (estimator_.apply(*current_line.line, current_line.projection, lanes[current])) {
+  if (estimator_.apply(*current_line.line, current_line.projection, config_->footprint.half_width,
+                       lanes[current])) {
     keep_room_beside(lanes, current);
+    estimator_.apply_beside(lanes, current);
   }
 
   FusionState fusion = estimator_.state(line.projection, vehicle.map_from_base.heading());
@@ -58,7 +60,12 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build_estimated(const Veh
     fusion.source = Source::kFused;
     fusion.marker_range = estimator_.paint_range();
     fusion.marker_age = std::max(0.0, to_seconds(vehicle.stamp - *last_paint));
-    paint = {estimator_.left_paint(), estimator_.right_paint(), s, s + estimator_.paint_range()};
+    paint = {estimator_.left_paint(),
+             estimator_.right_paint(),
+             estimator_.next_left_paint(),
+             estimator_.next_right_paint(),
+             s,
+             s + estimator_.paint_range()};
   }
   return finish(std::move(lanes), current, paint, std::move(fusion), vehicle);
 }
@@ -86,15 +93,17 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::lane_of_markers(
   const VehicleState vehicle = predicted(localized, now);
   MarkerPath markers = make_marker_path(
       marker_estimator_.centerline(), vehicle.map_from_base.to_local(localized.map_from_base),
-      marker_estimator_.seen_to(), fusion.left_half_width.value, fusion.right_half_width.value, vehicle.speed,
+      marker_estimator_.seen_to(), std::max(config_->footprint.half_width, fusion.left_half_width.value),
+      std::max(config_->footprint.half_width, fusion.right_half_width.value), vehicle.speed,
       config_->navigation_lane);
   if (!find_kinks(markers.path.points).empty()) {
     remarks_.push_back("lane markers: no vehicle could follow them");
     marker_estimator_.reset();
     return nothing(std::move(otherwise));
   }
-  const SeenPaint paint{marker_estimator_.left_paint(), marker_estimator_.right_paint(), markers.trusted_from,
-                        markers.trusted_to};
+  const SeenPaint paint{marker_estimator_.left_paint(), marker_estimator_.right_paint(),
+                        BoundaryType::kUnknown,         BoundaryType::kUnknown,
+                        markers.trusted_from,           markers.trusted_to};
   return finish({std::move(markers.path)}, 0, paint, std::move(fusion), vehicle);
 }
 
@@ -106,7 +115,10 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build_with_fixed_weight(c
     const double s_from_markers = lane.s_at_vehicle - markers->path.s_at_vehicle;
     return SeenPaint{markers->left_paint.value_or(BoundaryType::kUnknown),
                      markers->right_paint.value_or(BoundaryType::kUnknown),
-                     markers->trusted_from + s_from_markers, markers->trusted_to + s_from_markers};
+                     BoundaryType::kUnknown,
+                     BoundaryType::kUnknown,
+                     markers->trusted_from + s_from_markers,
+                     markers->trusted_to + s_from_markers};
   };
   const auto marker_age = [&] { return std::max(0.0, to_seconds(vehicle.stamp - markers_->stamp)); };
 

@@ -33,12 +33,14 @@ struct Inputs {
   Pose2 vehicle;
   std::optional<LaneMarkers> markers;
   double weight = 0.1;
+  std::string method = "estimator";
   double max_half_width = 2.0;
 };
 
 RelativeMap map_of(const Inputs& inputs) {
   PipelineConfig config;
   config.navigation_lane.lane_marker_weight = inputs.weight;
+  config.lane_fusion.method = inputs.method;
   config.navigation_lane.max_lane_half_width = inputs.max_half_width;
   RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>(config));
   pipeline.set_navigation_lines(prepare_navigation_lines({"map", inputs.lines}, IntakeParam()));
@@ -223,6 +225,7 @@ RC_GTEST_PROP(Invariance, WeightOneGivesTheMarkersAloneInsideTheirViewRange, ())
   const Cubic center = any_center_near(current_lane(map_of(inputs)));
   inputs.markers = lane_about(center);
   inputs.markers->stamp = from_seconds(50.0);
+  inputs.method = "fixed_weight";
   inputs.weight = 1.0;
   const RelativeMap map = map_of(inputs);
   RC_PRE(map.fusion.source == Source::kFused);  // markers of another lane do not count

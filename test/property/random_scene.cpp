@@ -21,6 +21,7 @@ void RandomDrive::make_config() {
   if (random_.chance(0.3)) lane.max_len_from_navigation_line = random_.uniform(5.0, 400.0);
   if (random_.chance(0.3)) lane.max_lane_half_width = random_.uniform(1.5, 4.0);
   if (random_.chance(0.3)) config_.footprint.half_width = random_.uniform(0.3, 1.4);
+  if (random_.chance(0.3)) config_.lane_fusion.method = "fixed_weight";
   if (random_.chance(0.3)) config_.lane_fusion.fade_length = random_.uniform(10.0, 100.0);
   config_.enable_cyclic_rerouting = random_.chance(0.8);
 }

@@ -172,6 +172,7 @@ PipelineConfig ugly_config(Random& random) {
     for (double* number : numbers) {
       if (random.chance(0.2)) *number *= std::exp(random.uniform(-2.5, 1.5));
     }
+    config.lane_fusion.method = random.chance(0.7) ? "estimator" : "fixed_weight";
     lane.lane_marker_weight = random.chance(0.3) ? 1.0 : random.uniform(0.0, 1.0);
     lane.min_lane_marker_quality = random.uniform(0.0, 0.5);
     if (random.chance(0.1)) lane.lane_source = LaneSource::kPerception;

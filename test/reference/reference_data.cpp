@@ -28,6 +28,7 @@ std::shared_ptr<const PipelineConfig> config_of(const json& scenario) {
   param.ratio_navigation_lane_len_to_speed = lane["ratio_navigation_lane_len_to_speed"];
   param.max_distance_to_navigation_line = lane["max_distance_to_navigation_line"];
   param.lane_marker_weight = lane["lane_marker_weight"];
+  config->lane_fusion.method = "fixed_weight";
   // The original knew neither a least quality nor ages.
   param.min_lane_marker_quality = 0.0;
   config->max_age = {1e9, 1e9, 1e9};

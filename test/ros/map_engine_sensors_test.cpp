@@ -18,7 +18,17 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class MapEngineSensors : public test::MovingVehicleTest {};
+/// Fused without a memory, so that maps of one moment can be compared to the last digit.
+NodeConfig fixed_weight() {
+  NodeConfig config;
+  config.pipeline.lane_fusion.method = "fixed_weight";
+  return config;
+}
+
+class MapEngineSensors : public test::MovingVehicleTest {
+ protected:
+  MapEngineSensors() : MovingVehicleTest(fixed_weight()) {}
+};
 
 /// Speed and yaw rate show in where markers are carried to that are newer than the pose.
 class MapEngineVelocities : public test::MovingVehicleTest {
@@ -26,7 +36,7 @@ class MapEngineVelocities : public test::MovingVehicleTest {
   MapEngineVelocities() : MovingVehicleTest(markers_alone()) {}
 
   static NodeConfig markers_alone() {
-    NodeConfig config;
+    NodeConfig config = fixed_weight();
     config.pipeline.navigation_lane.lane_source = core::LaneSource::kPerception;
     return config;
   }

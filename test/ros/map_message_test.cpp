@@ -85,6 +85,7 @@ void expect_same(const core::Lane& a, const core::Lane& b) {
 TEST(MapMessage, AMapReadBackIsTheMapThatWasBuilt) {
   core::PipelineConfig config;
   config.generate_left_boundary = false;
+  config.lane_fusion.method = "fixed_weight";
   config.navigation_lane.lane_marker_weight = 0.5;
   const auto [built, sent] = map_on_three_lanes(config);
   const core::RelativeMap back = to_core(sent);

@@ -27,7 +27,8 @@ class Replay(ReplayTest):
         for map in (maps[START].whole(), head.whole()):
             self.assertEqual(len(map.hdmap.lane), 3)
             self.assertEqual(map.fusion.source, FusionState.FUSED)
-            self.assertAlmostEqual(map.fusion.lateral_offset, 0.1 * 0.2, delta=1e-6)
+            self.assertEqual(map.fusion.method, 'estimator')
+            self.assertAlmostEqual(map.fusion.lateral_offset, 0.2, delta=0.02)
         self.expect_contract()
         self.assertIn('16 maps, 0 of them empty', run.output)
         self.assertEqual(run.errors, '')

@@ -154,7 +154,7 @@ TEST(MapBuilder, PaintIsUnknownWhereNoneWasSeen) {
 
 TEST(MapBuilder, PaintIsOnTheBoundaryWhereItWasSeenAndNowhereElse) {
   // Seen from 10 to 40 m along the current lane; the boundaries of an arc are shorter or longer than it.
-  const RelativeMap map = map_of(three_lanes(), 1, {kYellow, kWhite, 10.0, 40.0});
+  const RelativeMap map = map_of(three_lanes(), 1, {kYellow, kWhite, kUnknown, kUnknown, 10.0, 40.0});
   const Lane& lane = map.lanes[1];
   EXPECT_EQ(types_of(lane.left_boundary), Types({kUnknown, kYellow, kUnknown}));
   EXPECT_EQ(types_of(lane.right_boundary), Types({kUnknown, kWhite, kUnknown}));
@@ -165,7 +165,7 @@ TEST(MapBuilder, PaintIsOnTheBoundaryWhereItWasSeenAndNowhereElse) {
 }
 
 TEST(MapBuilder, PaintOnASharedBoundaryIsTheNeighboursToo) {
-  const RelativeMap map = map_of(three_lanes(), 1, {kYellow, kWhite, 10.0, 40.0});
+  const RelativeMap map = map_of(three_lanes(), 1, {kYellow, kWhite, kUnknown, kUnknown, 10.0, 40.0});
   EXPECT_EQ(types_of(map.lanes[0].right_boundary), Types({kUnknown, kYellow, kUnknown}));
   EXPECT_EQ(types_of(map.lanes[0].left_boundary), Types({kUnknown}));
   EXPECT_EQ(types_of(map.lanes[2].left_boundary), Types({kUnknown, kWhite, kUnknown}));
@@ -175,7 +175,7 @@ TEST(MapBuilder, PaintOnASharedBoundaryIsTheNeighboursToo) {
 
 TEST(MapBuilder, PaintBesideAGapIsNotTheOtherLanes) {
   const RelativeMap map =
-      map_of({straight_lane("left", 6.0), straight_lane("right", 0.0, 1)}, 1, {kYellow, kWhite, 0.0, 40.0});
+      map_of({straight_lane("left", 6.0), straight_lane("right", 0.0, 1)}, 1, {kYellow, kWhite, kUnknown, kUnknown, 0.0, 40.0});
   EXPECT_EQ(types_of(map.lanes[0].right_boundary), Types({kUnknown}));
 }
 

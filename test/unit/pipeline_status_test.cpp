@@ -104,7 +104,9 @@ TEST(PipelineStatus, ReasonsOfMarkersAreToldWhereThereIsNoLineEither) {
 }
 
 TEST(PipelineStatus, MarkersThatHaveStoppedAreDoneWithout) {
-  Scene scene(three_straight_lines());
+  PipelineConfig config;
+  config.lane_fusion.method = "fixed_weight";
+  Scene scene(three_straight_lines(), config);
   scene.see(lane_about({0.5}));
   EXPECT_EQ(scene.at(kOnTheRoad).fusion.source, Source::kFused);
   for (int i = 0; i < 6; ++i) scene.at(kOnTheRoad);

@@ -119,6 +119,7 @@ TEST(Pipeline, PublishesWhatIsLeftDownToTheLastMetre) {
 
 TEST(Pipeline, FusesTheCurrentLaneWithTheMarkers) {
   PipelineConfig config;
+  config.lane_fusion.method = "fixed_weight";
   config.navigation_lane.lane_marker_weight = 0.5;
   Scene scene(three_straight_lines(), config);
   LaneMarkers markers = lane_about({0.4}, 1.6);
@@ -138,6 +139,7 @@ TEST(Pipeline, FusesTheCurrentLaneWithTheMarkers) {
 TEST(Pipeline, UsesMarkersWhereTheyWereSeen) {
   // The paint is 0.4 m left of the line, and the camera looks askew: the vehicle has turned since.
   PipelineConfig config;
+  config.lane_fusion.method = "fixed_weight";
   config.navigation_lane.lane_marker_weight = 1.0;
   Scene scene({recording(straight(Pose2(), 600.0, 0.5))}, config);
   const Pose2 seen_from(Point2(100.0, 0.0), 0.1), now(Point2(101.5, 0.2), 0.0);
@@ -214,6 +216,7 @@ TEST(Pipeline, MergesLinesThatAreTheSameAndSaysSo) {
 TEST(Pipeline, KeepsLanesApartThatTheMarkersPushTogether) {
   // The paint shows the lane 2.5 m to the left, where the left line is 1 m farther on.
   PipelineConfig config;
+  config.lane_fusion.method = "fixed_weight";
   config.navigation_lane.lane_marker_weight = 1.0;
   Scene scene(three_straight_lines(), config);
   scene.see(lane_about({2.5}));
@@ -226,6 +229,7 @@ TEST(Pipeline, KeepsLanesApartThatTheMarkersPushTogether) {
 TEST(Pipeline, DoesWithoutMarkersThatAreAnotherLanes) {
   // Just across the line between two lanes: the camera sees the new lane, the current one is the old one yet.
   PipelineConfig config;
+  config.lane_fusion.method = "fixed_weight";
   config.navigation_lane.lane_marker_weight = 1.0;
   Scene scene(three_straight_lines(), config);
   scene.at(Pose2(Point2(99.0, 1.6), 0.0));

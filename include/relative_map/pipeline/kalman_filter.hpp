@@ -59,7 +59,7 @@ class KalmanFilter {
     constexpr int kRows = Jacobian::RowsAtCompileTime;
     const Eigen::Matrix<double, States, kRows> p_ht = covariance_ * h.transpose();
     const Eigen::Matrix<double, kRows, kRows> s = h * p_ht + r;
-    const Eigen::Matrix<double, kRows, States> gain_transposed = s.ldlt().solve(p_ht.transpose());
+    const Eigen::Matrix<double, kRows, States> gain_transposed = s.llt().solve(p_ht.transpose());
     const Eigen::Matrix<double, States, kRows> gain = gain_transposed.transpose();
     state_ += gain * innovation;
     // (I - K H) P (I - K H)' + K R K'
@@ -74,7 +74,7 @@ class KalmanFilter {
                           const Eigen::MatrixBase<Jacobian>& h, const Eigen::MatrixBase<Noise>& r) const {
     constexpr int kRows = Jacobian::RowsAtCompileTime;
     const Eigen::Matrix<double, kRows, kRows> s = h * covariance_ * h.transpose() + r;
-    return innovation.dot(s.ldlt().solve(innovation));
+    return innovation.dot(s.llt().solve(innovation));
   }
 
   /// To be put into another form: states that end, begin, or are known anew.

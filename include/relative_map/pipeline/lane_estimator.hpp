@@ -47,12 +47,19 @@ class LaneEstimator {
 
   BoundaryType left_paint() const { return left_paint_; }
   BoundaryType right_paint() const { return right_paint_; }
+  BoundaryType next_left_paint() const { return next_left_.type; }
+  BoundaryType next_right_paint() const { return next_right_.type; }
 
   /// Where the vehicle is: `localized` without what is known to be wrong with it.
   VehicleState corrected(const VehicleState& localized) const;
   /// Moves the current lane to where it is beside its line, and sets its half widths: the window of `line`
-  /// around `projection`. Returns whether it did: not without anything known of this line.
-  bool apply(const NavigationLine& line, const LineProjection& projection, LanePath& lane) const;
+  /// around `projection`; a lane is at least as wide as the vehicle. Returns whether it did: not without
+  /// anything known of this line.
+  bool apply(const NavigationLine& line, const LineProjection& projection, double least_half_width,
+             LanePath& lane) const;
+  /// Tells the lanes beside the current one, `lanes[current]`, where their far borders are, if paint showed
+  /// it.
+  void apply_beside(std::vector<LanePath>& lanes, std::size_t current) const;
   FusionState state(const LineProjection& projection, double heading) const;
 
  private:
@@ -85,6 +92,14 @@ class LaneEstimator {
     Time since;
   };
 
+  /// A border beyond those of the lane: its distance from the lane's center [m], a filter of its own.
+  struct NextBorder {
+    KalmanFilter<1> distance;
+    bool known = false;
+    BoundaryType type = BoundaryType::kUnknown;  ///< in the newest image
+  };
+  void see_next(const std::optional<PaintSamples>& paint, Index side, const NavigationLine& line,
+                std::size_t vertex, NextBorder& border);
   /// What is remembered of the stream of images, whatever becomes of the estimate.
   struct Watch {
     std::optional<Time> begun;  ///< since when one side alone has been seen
@@ -127,6 +142,7 @@ class LaneEstimator {
   std::optional<Surprise> surprise_;
   bool doubted_ = false;  ///< since refused_since_
   Watch watch_;
+  NextBorder next_left_, next_right_;
   double paint_range_ = 0.0;
   std::string given_up_;
   BoundaryType left_paint_ = BoundaryType::kUnknown, right_paint_ = BoundaryType::kUnknown;

@@ -10,10 +10,10 @@
 
 namespace relative_map::core {
 
-/// Half widths that paint has shown.
+/// Half widths that paint has shown; none: not on that side.
 struct SeenHalfWidths {
-  double left = 0.0, right = 0.0;  ///< [m]
-  double to = 0.0;                 ///< [m] s up to which
+  std::optional<double> left, right;  ///< [m]
+  double to = 0.0;                    ///< [m] s up to which
 };
 
 /// One lane on its way through the stages: its centerline in the body frame and what is known of it.

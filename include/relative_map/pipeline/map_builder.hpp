@@ -14,7 +14,9 @@ namespace relative_map::core {
 struct SeenPaint {
   BoundaryType left = BoundaryType::kUnknown;
   BoundaryType right = BoundaryType::kUnknown;
-  double from = 0.0, to = 0.0;  ///< [m] s of the lane
+  BoundaryType next_left = BoundaryType::kUnknown;   ///< of the lane to the left
+  BoundaryType next_right = BoundaryType::kUnknown;  ///< of the lane to the right
+  double from = 0.0, to = 0.0;                       ///< [m] s of the lane
 };
 
 /// Lanes, boundaries, samples, neighbours and the road around them. `lanes` and `borders` belong together.

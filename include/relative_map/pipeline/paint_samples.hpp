@@ -19,13 +19,14 @@ struct PaintSamples {
   std::array<Point2, kPaintSamples> points;  ///< [m] in the frame of the map's pose
   Eigen::Matrix<double, kPaintSamples, kPaintSamples>
       covariance;               ///< [m^2] of the points, square to the paint
-  double from = 0.0, to = 0.0;  ///< [m] x in the marker's frame
+  double from = 0.0, to = 0.0;  ///< [m] x of the first and the last one
 };
 
 /// The paint of one image as seen from the body now; none: not seen, or of no use.
 struct SeenSides {
   std::optional<PaintSamples> left, right;
-  bool unchanged = false;  ///< the numbers are those of the image before
+  std::optional<PaintSamples> next_left, next_right;  ///< the borders beyond
+  bool unchanged = false;                             ///< the numbers are those of the image before
 };
 
 /// Samples the paint, seen from where the image was taken: `base_from_sensor` is the marker's frame then, as
