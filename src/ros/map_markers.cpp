@@ -149,7 +149,7 @@ double left_edge(const MapMsg& map) {
 /// Beside the road, where no lane is behind it. Its colours stand out by as much from black as from white.
 Marker draw_status(const MapMsg& map) {
   Marker marker = make_marker(map, "status", 0, Marker::TEXT_VIEW_FACING);
-  marker.pose.position.x = 12.0;
+  marker.pose.position.x = 18.0;
   marker.pose.position.z = 0.5;
   marker.scale.z = kTextHeight;
   marker.frame_locked = true;
