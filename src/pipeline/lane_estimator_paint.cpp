@@ -135,9 +135,9 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
     return {why};
   }
   std::array<SeenSide, 2> seen = assign(sides, line, projection);
-  if (!may_begin(seen, stamp)) return {};
-
   std::vector<std::string> ignored;
+  if (!informed() && !may_begin(seen, stamp, ignored)) return ignored;
+
   bool any = false;
   for (SeenSide& one : seen) {
     if (any) measure_again(one, line, projection);  // the surer side has moved the state
@@ -149,11 +149,7 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
       paint_range_ = any ? std::max(paint_range_, one.paint->to) : one.paint->to;
       any = true;
     } else {
-      std::ostringstream reason;
-      reason.precision(2);
-      reason << one.name << " is ignored: it is " << one.measurement->mean_offset()
-             << " m aside of where this lane's paint is expected";
-      ignored.push_back(reason.str());
+      ignored.push_back(refusal_of(one));
     }
   }
   if (!filter_.state().allFinite()) {
@@ -162,6 +158,7 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
     see_next(sides.next_left, kLeft, line, projection.nearest_vertex, next_left_);
     see_next(sides.next_right, kRight, line, projection.nearest_vertex, next_right_);
     last_paint_ = stamp;
+    watch_.refused = false;
     surprise_.reset();
     refused_since_.reset();
     doubted_ = false;
@@ -195,16 +192,29 @@ void LaneEstimator::see_next(const std::optional<PaintSamples>& paint, Index sid
   border.type = paint->type;
 }
 
-/// The first paint must not be an outlier's: both sides that fit together, or one for a while.
-bool LaneEstimator::may_begin(const std::array<SeenSide, 2>& seen, Time stamp) {
-  if (informed()) return true;
-  if (seen[0].measurement && seen[1].measurement) {
-    const double apart = seen[0].measurement->mean_offset() - seen[1].measurement->mean_offset();
-    if (std::abs(apart) < kSameSurprise) return true;
+/// The first paint must not be an outlier's: both sides that fit together, or one for a while. Where paint
+/// has been refused just now, it must go on for longer than outliers do.
+bool LaneEstimator::may_begin(const std::array<SeenSide, 2>& seen, Time stamp,
+                              std::vector<std::string>& ignored) {
+  for (const SeenSide& one : seen) {
+    if (one.measurement && !fits(*one.measurement)) ignored.push_back(refusal_of(one));
   }
-  if (!watch_.begun || to_seconds(stamp - watch_.last_image) > 1.0) watch_.begun = stamp;
+  if (!ignored.empty()) watch_.refused = true;
+  if (!ignored.empty() || !watch_.begun || to_seconds(stamp - watch_.last_image) > 1.0) watch_.begun = stamp;
   watch_.last_image = stamp;
-  return to_seconds(stamp - *watch_.begun) > kPatience;
+  if (!ignored.empty()) return false;
+  const double lasted = to_seconds(stamp - *watch_.begun);
+  if (watch_.refused) return lasted > kPatienceWithOne;
+  if (!seen[0].measurement || !seen[1].measurement) return lasted > kPatience;
+  return std::abs(seen[0].measurement->mean_offset() - seen[1].measurement->mean_offset()) < kSameSurprise;
+}
+
+std::string LaneEstimator::refusal_of(const SeenSide& side) {
+  std::ostringstream reason;
+  reason.precision(2);
+  reason << side.name << " is ignored: it is " << side.measurement->mean_offset()
+         << " m aside of where this lane's paint is expected";
+  return reason.str();
 }
 
 /// Whether paint says the same numbers as before, while the line has moved beside the vehicle.
@@ -232,6 +242,7 @@ void LaneEstimator::reconsider(const std::array<SeenSide, 2>& seen, Time stamp) 
   if (!refused_since_) refused_since_ = stamp;
   const double refused = to_seconds(stamp - *refused_since_);
   if (informed() && refused > kLostTime) {
+    watch_.refused = true;
     give_up(*last_, "the lane markers have not been this lane's for long: localization is believed again");
     return;
   }

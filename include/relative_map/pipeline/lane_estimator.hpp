@@ -102,7 +102,8 @@ class LaneEstimator {
                 std::size_t vertex, NextBorder& border);
   /// What is remembered of the stream of images, whatever becomes of the estimate.
   struct Watch {
-    std::optional<Time> begun;  ///< since when one side alone has been seen
+    std::optional<Time> begun;  ///< since when paint has come that may be believed
+    bool refused = false;       ///< paint, and none was believed since
     Time last_image{};          ///< of it
     double max_offset = 0.0;    ///< [m] LaneFusionParam
     bool frozen = false;        ///< paint has not changed, though the line has
@@ -124,7 +125,9 @@ class LaneEstimator {
   /// The sides, the surer one first.
   std::array<SeenSide, 2> assign(const SeenSides& sides, const NavigationLine& line,
                                  const LineProjection& projection) const;
-  bool may_begin(const std::array<SeenSide, 2>& seen, Time stamp);
+  /// Leaves a sentence in `ignored` for each side that does not fit.
+  bool may_begin(const std::array<SeenSide, 2>& seen, Time stamp, std::vector<std::string>& ignored);
+  static std::string refusal_of(const SeenSide& side);
   bool is_frozen(const SeenSides& sides, const NavigationLine& line, const LineProjection& projection);
   /// What to make of paint of which nothing fits.
   void reconsider(const std::array<SeenSide, 2>& seen, Time stamp);
