@@ -141,7 +141,9 @@ TEST(MapMessage, AMapReadBackKeepsTheContract) {
 }
 
 TEST(MapMessage, AMapSaysEverythingInApollosTerms) {
-  const auto [built, sent] = map_on_three_lanes();
+  core::PipelineConfig config;
+  config.lane_fusion.method = "fixed_weight";
+  const auto [built, sent] = map_on_three_lanes(config);
   EXPECT_EQ(sent.header.stamp, ros::Time(100, 5));
   EXPECT_EQ(sent.header.frame_id, "base_link");
   ASSERT_EQ(sent.hdmap.lane.size(), 3u);
