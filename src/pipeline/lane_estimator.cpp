@@ -260,8 +260,8 @@ void LaneEstimator::apply_beside(std::vector<LanePath>& lanes, std::size_t curre
 
 FusionState LaneEstimator::state(const LineProjection& projection, double heading) const {
   FusionState state;
-  state.method = "estimator";
   if (!informed()) return state;
+  state.method = "estimator";
   const Filter::State& x = filter_.state();
   const Filter::Covariance& p = filter_.covariance();
   const double line_heading = heading - projection.heading_offset;
