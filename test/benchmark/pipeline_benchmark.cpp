@@ -13,21 +13,24 @@ std::size_t points_of(const RelativeMap& map) {
   return points;
 }
 
-/// A whole tick: newest pose in, map out; the check is timed by itself.
-void time_ticks(benchmark::State& state, const Scene& scene, bool with_markers) {
-  RelativeMapPipeline pipeline = pipeline_of(scene, with_markers);
+/// A whole tick: newest pose in, and an image if a method is given that fuses it, map out; the check is timed
+/// by itself.
+void time_ticks(benchmark::State& state, const Scene& scene, const std::string& method = "") {
+  RelativeMapPipeline pipeline = method.empty() ? pipeline_of(scene) : pipeline_of(scene, method);
   Time now = from_seconds(1.0);
   RelativeMap map;
   for (auto _ : state) {
+    if (!method.empty()) see(pipeline, now);
     map = tick(pipeline, scene, now);
     benchmark::DoNotOptimize(map);
   }
   if (map.lanes.empty()) state.SkipWithError(map.status.message.c_str());
+  if (!method.empty() && map.fusion.source != Source::kFused) state.SkipWithError("nothing was fused");
   state.counters["points"] = static_cast<double>(points_of(map));
 }
 
 void time_check(benchmark::State& state, const Scene& scene) {
-  RelativeMapPipeline pipeline = pipeline_of(scene, false);
+  RelativeMapPipeline pipeline = pipeline_of(scene);
   Time now = from_seconds(1.0);
   const RelativeMap map = tick(pipeline, scene, now);
   if (!check_map(map, {}).empty()) state.SkipWithError("the map breaks the contract");
@@ -45,25 +48,28 @@ void with_recorded_lines(benchmark::State& state, Timing timing) {
 }
 
 void TickRecordedLines(benchmark::State& state) {
-  with_recorded_lines(state, [&](const Scene& scene) { time_ticks(state, scene, false); });
+  with_recorded_lines(state, [&](const Scene& scene) { time_ticks(state, scene); });
 }
-void TickRecordedLinesFused(benchmark::State& state) {
-  with_recorded_lines(state, [&](const Scene& scene) { time_ticks(state, scene, true); });
+void TickRecordedLinesFixedWeight(benchmark::State& state) {
+  with_recorded_lines(state, [&](const Scene& scene) { time_ticks(state, scene, "fixed_weight"); });
+}
+void TickRecordedLinesEstimated(benchmark::State& state) {
+  with_recorded_lines(state, [&](const Scene& scene) { time_ticks(state, scene, "estimator"); });
 }
 void CheckRecordedLines(benchmark::State& state) {
   with_recorded_lines(state, [&](const Scene& scene) { time_check(state, scene); });
 }
 void TickFiveLanes(benchmark::State& state) {
-  time_ticks(state, parallel_lines(5, 10000.0, 0.5), false);
+  time_ticks(state, parallel_lines(5, 10000.0, 0.5));
 }
 void CheckFiveLanes(benchmark::State& state) {
   time_check(state, parallel_lines(5, 10000.0, 0.5));
 }
 void TickOneLine(benchmark::State& state) {
-  time_ticks(state, parallel_lines(1, 0.1 * static_cast<double>(state.range(0)), 0.1), false);
+  time_ticks(state, parallel_lines(1, 0.1 * static_cast<double>(state.range(0)), 0.1));
 }
 void TickManyLines(benchmark::State& state) {
-  time_ticks(state, scattered_lines(static_cast<std::size_t>(state.range(0))), false);
+  time_ticks(state, scattered_lines(static_cast<std::size_t>(state.range(0))));
 }
 void CheckOneLine(benchmark::State& state) {
   time_check(state, parallel_lines(1, 0.1 * static_cast<double>(state.range(0)), 0.1));
@@ -83,7 +89,8 @@ void IntakeClosedLoop(benchmark::State& state) {
 }
 
 BENCHMARK(TickRecordedLines)->Unit(benchmark::kMicrosecond);
-BENCHMARK(TickRecordedLinesFused)->Unit(benchmark::kMicrosecond);
+BENCHMARK(TickRecordedLinesFixedWeight)->Unit(benchmark::kMicrosecond);
+BENCHMARK(TickRecordedLinesEstimated)->Unit(benchmark::kMicrosecond);
 BENCHMARK(CheckRecordedLines)->Unit(benchmark::kMicrosecond);
 BENCHMARK(TickFiveLanes)->Unit(benchmark::kMicrosecond);
 BENCHMARK(CheckFiveLanes)->Unit(benchmark::kMicrosecond);

@@ -97,22 +97,26 @@ Scene closed_loop(double length, double spacing) {
   return scene;
 }
 
-RelativeMapPipeline pipeline_of(const Scene& scene, bool with_markers) {
-  RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>());
+RelativeMapPipeline pipeline_of(const Scene& scene, const std::string& method) {
+  auto config = std::make_shared<PipelineConfig>();
+  config->lane_fusion.method = method;
+  RelativeMapPipeline pipeline(config);
   pipeline.set_navigation_lines(prepare_navigation_lines(scene.navigation, {}));
   Chassis chassis;
   chassis.stamp = from_seconds(1.0);
   chassis.speed = 10.0;
   pipeline.set_chassis(chassis);
-  if (!with_markers) return pipeline;
+  return pipeline;
+}
+
+void see(RelativeMapPipeline& pipeline, Time now) {
   LaneMarkers markers;
-  markers.stamp = from_seconds(1.0);
+  markers.stamp = now;
   markers.left.quality = markers.right.quality = 0.9;
   markers.left.cubic.c0 = 1.8;
   markers.right.cubic.c0 = -1.7;
   markers.left.view_range = markers.right.view_range = 50.0;
   pipeline.set_lane_markers(markers);
-  return pipeline;
 }
 
 RelativeMap tick(RelativeMapPipeline& pipeline, const Scene& scene, Time& now) {

@@ -25,8 +25,10 @@ Scene scattered_lines(std::size_t count);
 /// A lap of `length` [m] whose last point is its first.
 Scene closed_loop(double length, double spacing);
 
-/// A pipeline that has the scene's lines, and lane markers beside the vehicle; without them if not asked for.
-RelativeMapPipeline pipeline_of(const Scene& scene, bool with_markers);
+/// A pipeline that has the scene's lines, and fuses by `method`.
+RelativeMapPipeline pipeline_of(const Scene& scene, const std::string& method = "estimator");
+/// An image of the lane markers beside the vehicle.
+void see(RelativeMapPipeline& pipeline, Time now);
 /// Gives the pose of the scene, a little later each time.
 RelativeMap tick(RelativeMapPipeline& pipeline, const Scene& scene, Time& now);
 
