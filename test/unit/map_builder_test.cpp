@@ -180,17 +180,17 @@ TEST(MapBuilder, PaintBesideAGapIsNotTheOtherLanes) {
 }
 
 TEST(MapBuilder, PaintThatStartsBehindTheLaneStartsWithIt) {
-  const RelativeMap map = map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, -3.0, 500.0});
+  const RelativeMap map = map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, kUnknown, kUnknown, -3.0, 500.0});
   EXPECT_EQ(types_of(map.lanes[0].left_boundary), Types({kYellow}));
   EXPECT_EQ(types_of(map.lanes[0].right_boundary), Types({kWhite}));
-  const RelativeMap behind = map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, -3.0, -1.0});
+  const RelativeMap behind = map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, kUnknown, kUnknown, -3.0, -1.0});
   EXPECT_EQ(types_of(behind.lanes[0].left_boundary), Types({kUnknown}));
 }
 
 TEST(MapBuilder, PaintIsFoundRoundAHalfCircle) {
   // Its far end lies beside its start.
   const LanePath half = test::lane("a", arc(Pose2(Point2(-2.0, 0.0), 0.0), 0.1, 60.0, 0.4));
-  const RelativeMap map = map_of({half}, 0, {kYellow, kUnknown, 0.0, 31.4});
+  const RelativeMap map = map_of({half}, 0, {kYellow, kUnknown, kUnknown, kUnknown, 0.0, 31.4});
   EXPECT_NEAR(map.lanes[0].left_boundary.paint.back().s, 31.4 * (1.0 - 0.1 * 1.75), 0.1);
   EXPECT_EQ(types_of(map.lanes[0].right_boundary), Types({kUnknown}));
 }
