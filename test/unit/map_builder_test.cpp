@@ -174,16 +174,18 @@ TEST(MapBuilder, PaintOnASharedBoundaryIsTheNeighboursToo) {
 }
 
 TEST(MapBuilder, PaintBesideAGapIsNotTheOtherLanes) {
-  const RelativeMap map =
-      map_of({straight_lane("left", 6.0), straight_lane("right", 0.0, 1)}, 1, {kYellow, kWhite, kUnknown, kUnknown, 0.0, 40.0});
+  const RelativeMap map = map_of({straight_lane("left", 6.0), straight_lane("right", 0.0, 1)}, 1,
+                                 {kYellow, kWhite, kUnknown, kUnknown, 0.0, 40.0});
   EXPECT_EQ(types_of(map.lanes[0].right_boundary), Types({kUnknown}));
 }
 
 TEST(MapBuilder, PaintThatStartsBehindTheLaneStartsWithIt) {
-  const RelativeMap map = map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, kUnknown, kUnknown, -3.0, 500.0});
+  const RelativeMap map =
+      map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, kUnknown, kUnknown, -3.0, 500.0});
   EXPECT_EQ(types_of(map.lanes[0].left_boundary), Types({kYellow}));
   EXPECT_EQ(types_of(map.lanes[0].right_boundary), Types({kWhite}));
-  const RelativeMap behind = map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, kUnknown, kUnknown, -3.0, -1.0});
+  const RelativeMap behind =
+      map_of({straight_lane("a", 0.0)}, 0, {kYellow, kWhite, kUnknown, kUnknown, -3.0, -1.0});
   EXPECT_EQ(types_of(behind.lanes[0].left_boundary), Types({kUnknown}));
 }
 
