@@ -162,7 +162,7 @@ void LaneEstimator::follow_line(const NavigationLine& line, const LineProjection
   constexpr double kSpacing = OffsetProfile::kSpacing;
   Filter::State& x = filter_.state();
   Filter::Covariance& p = filter_.covariance();
-  if (line.id != line_id_ || std::abs(moved) > kKnots * kSpacing) {
+  if (line.id != line_id_ || !(std::abs(moved) <= kKnots * kSpacing)) {  // NaN is no way either
     line_id_ = line.id;
     next_left_ = next_right_ = NextBorder();
     line_s_ = projection.s;

@@ -49,7 +49,7 @@ std::optional<LaneEstimator::Measurement> LaneEstimator::measure(const PaintSamp
     const Point2& point = paint.points[static_cast<std::size_t>(i)];
     const Point2 arm = pose.rotate_to_parent(point);
     const BesideLine beside = walker.beside(pose.position() + arm - line_origin);
-    if (!beside.exists) {
+    if (!beside.exists || !std::isfinite(beside.s) || !std::isfinite(beside.lateral)) {
       result.covariance(i, i) += kUnseen;
       continue;
     }

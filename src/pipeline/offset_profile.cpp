@@ -16,6 +16,11 @@ double kernel(double distance) {
   return kStddev * kStddev * (1.0 + d) * std::exp(-d);
 }
 
+/// Whether any knot has a share at `place`; not at one that is no number.
+bool has_shares(double place, int knots, int beyond) {
+  return place > -beyond - 2.0 && place < knots + beyond + 2.0;
+}
+
 /// Of the uniform cubic B-spline, `distance` knots from its middle.
 double basis(double distance) {
   const double d = std::abs(distance);
@@ -45,6 +50,7 @@ OffsetProfile::Covariance OffsetProfile::prior() {
 
 Eigen::Matrix<double, 1, OffsetProfile::kKnots> OffsetProfile::shares(double place) {
   Eigen::Matrix<double, 1, kKnots> row = Eigen::Matrix<double, 1, kKnots>::Zero();
+  if (!has_shares(place, kKnots, kBeyond)) return row;
   const Next step = next();
   const int first = static_cast<int>(std::floor(place)) - 1;
   for (int knot = first; knot < first + 4; ++knot) {
@@ -81,6 +87,7 @@ OffsetProfile::OffsetProfile(const Knots& knots) : zero_(knots.isZero(0.0)) {
 }
 
 double OffsetProfile::at(double place) const {
+  if (!has_shares(place, kKnots, kBeyond)) return 0.0;
   const int first = static_cast<int>(std::floor(place)) - 1 + kBeyond;
   double offset = 0.0;
   for (int knot = std::max(0, first); knot < std::min<int>(first + 4, knots_.size()); ++knot) {

@@ -15,6 +15,8 @@ from node_support import Latest, NodeTest, wait_for
 
 NAN = float('nan')
 
+FIXED_WEIGHT = {'lane_fusion': {'method': 'fixed_weight'}}
+
 
 class Inputs(NodeTest):
     def test_one_after_the_other(self):
@@ -128,7 +130,7 @@ class Inputs(NodeTest):
         not_finite.left_lane_marker.c2_curvature = not_finite.right_lane_marker.c0_position = NAN
         elsewhere = messages.lane_markers(rospy.Time(0), frame='camera_link')
 
-        self.drive()
+        self.drive(parameters=FIXED_WEIGHT)  # which has no memory of what was seen before
         self.vehicle.sends_markers = False
         markers = rospy.Publisher('perception/lane_markers', LaneMarkers, queue_size=1)
         self.addCleanup(markers.unregister)
@@ -147,7 +149,7 @@ class Inputs(NodeTest):
             localization.pose.position.x += 0.4
             return localization
 
-        self.drive()
+        self.drive(parameters=FIXED_WEIGHT)  # which takes the pose as it is
         self.vehicle.alter = of_imu
         self.assertIn('imu_link', self.maps.next_with(MapStatus.NO_TRANSFORM).status.message)
         tf_static = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)

@@ -47,7 +47,7 @@ class Parameters(NodeTest):
         return client
 
     def test_reconfigure_is_applied_whole(self):
-        self.drive(parameters={'map_param': {'default_speed_limit': 20.0}})
+        self.drive(parameters={'map_param': {'default_speed_limit': 20.0}, 'lane_fusion': {'method': 'fixed_weight'}})
         self.vehicle.marker_offset = 0.4
         client = self.reconfigure_client()
         before = client.get_configuration(timeout=10)
