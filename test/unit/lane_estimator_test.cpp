@@ -299,6 +299,24 @@ TEST(LaneEstimator, ALaneChangeMovesTheStateToTheNeighbourWithoutAWobble) {
   }
 }
 
+TEST(LaneEstimator, PaintBeyondTheNeighboursTellsTheirFarBorders) {
+  Scene scene(test::three_straight_lines());
+  RelativeMap map;
+  for (int i = 0; i < 20; ++i) {
+    LaneMarkers markers = test::lane_about({0.0});
+    markers.next_left = {
+        test::marker({kHalfWidth + 3.9})};  // a lane of 3.9 m, its line 1.75 m from the near border
+    markers.next_left[0].type = BoundaryType::kSolidYellow;
+    scene.see(markers);
+    map = scene.at(Pose2(Point2(50.0 + i, 0.0), 0.0));
+  }
+  ASSERT_EQ(map.lanes.size(), 3u);
+  EXPECT_NEAR(map.lanes[0].left_samples.front().width, 3.9 - kHalfWidth, 0.03);
+  EXPECT_EQ(map.lanes[0].left_boundary.paint.at(1).type, BoundaryType::kSolidYellow);
+  EXPECT_NEAR(map.lanes[2].right_samples.front().width, kHalfWidth, 1e-6) << "nothing was seen there";
+  EXPECT_EQ(map.lanes[2].right_boundary.paint.size(), 1u);
+}
+
 TEST(LaneEstimator, PredictsTheMapToTheTick) {
   PipelineConfig config;
   config.predict_to_tick = true;
