@@ -114,6 +114,7 @@ void LaneEstimator::follow_odometry(const VehicleState& to, double decay_time) {
   x.segment<3>(kX) += (1.0 - kept) * x.segment<3>(kBiasX) + Vector3(way * ahead.x(), way * ahead.y(), turn);
   x.segment<3>(kBiasX) *= kept;
   x.segment<2>(kLeft) = (f.block<2, 2>(kLeft, kLeft) * x.segment<2>(kLeft)).eval();
+  x.segment<2>(kLeft).array() += (1.0 - kept) * (half_width_ - x.segment<2>(kLeft).array());
   const double along = kSpeedWalk * kSpeedWalk * dt + kSpeedScale * kSpeedScale * std::abs(to.speed * way);
   const double aside = kSlipWalk * kSlipWalk * dt;
   q.block<2, 2>(kX, kX) = along * ahead * ahead.transpose() + aside * left * left.transpose();

@@ -212,6 +212,17 @@ TEST(LaneEstimator, WithoutPaintTheOffsetDecaysAtItsRate) {
   EXPECT_NEAR(drive.error(map, 10.0), -1.0 + std::exp(-1.0), 0.06);
 }
 
+TEST(LaneEstimator, WithoutPaintTheWidthGoesBackToWhatIsExpected) {
+  PipelineConfig config;
+  config.lane_fusion.decay_time = 2.0;
+  StraightDrive drive(config);
+  drive.half_width = 1.5;
+  RelativeMap map = drive.drive(30);
+  EXPECT_NEAR(map.fusion.left_half_width.value, 1.5, 0.02);
+  for (int i = 0; i < 100; ++i) map = drive.tick();
+  EXPECT_NEAR(map.fusion.left_half_width.value, kHalfWidth, 0.01);
+}
+
 TEST(LaneEstimator, ALaneThatWidensToOneSideKeepsItsCenter) {
   StraightDrive drive;
   drive.drive(20);
