@@ -167,7 +167,9 @@ void write_line_file(const std::string& path, const LineFile& file, Layout layou
 }
 
 void write_navigation_line(const std::string& path, const RecordedLine& line) {
-  write_line_file(path, {{}, line});
+  LineFile file;
+  file.line = line;
+  write_line_file(path, file);
 }
 
 }  // namespace relative_map::core
