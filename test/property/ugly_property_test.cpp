@@ -9,7 +9,7 @@
 namespace relative_map::core {
 namespace {
 
-constexpr std::uint64_t kDrives = 4000;
+constexpr std::uint64_t kDrives = 8000;
 constexpr int kSteps = 12;
 
 TEST(UglyInputs, NeverMakeAMapThatBreaksTheContract) {
@@ -39,10 +39,10 @@ TEST(UglyInputs, NeverMakeAMapThatBreaksTheContract) {
   for (const StatusCode code :
        {StatusCode::kStaleLocalization, StatusCode::kInvalidLocalization, StatusCode::kNoNavigationLine,
         StatusCode::kOffRoute, StatusCode::kLineEnd, StatusCode::kMarkersUnusable}) {
-    EXPECT_GT(statuses[code], 50) << "status " << static_cast<int>(code);
+    EXPECT_GT(statuses[code], 100) << "status " << static_cast<int>(code);
   }
   for (const Source source : {Source::kFused, Source::kNavigationLine, Source::kLaneMarkers}) {
-    EXPECT_GT(sources[source], 100) << "source " << static_cast<int>(source);
+    EXPECT_GT(sources[source], 300) << "source " << static_cast<int>(source);
   }
   EXPECT_GT(several_lanes, 3000u);
 }

@@ -170,13 +170,14 @@ TEST(Pipeline, FollowsMarkersWhereNoLineIsInReach) {
 
 TEST(Pipeline, OnPerceptionTakesNoCountOfLines) {
   PipelineConfig config;
+  config.lane_fusion.method = "fixed_weight";
   config.navigation_lane.lane_source = LaneSource::kPerception;
   Scene scene(three_straight_lines(), config);
   scene.see(lane_about({0.3}));
   const RelativeMap map = scene.at(Pose2(Point2(100.0, 0.0), 0.0));
   EXPECT_EQ(lane_ids(map), Ids({"lane_markers"}));
   EXPECT_NEAR(map.lanes[0].path.front().position.x(), -2.0, 1e-12);
-  EXPECT_NEAR(map.lanes[0].path.front().position.y(), 0.3, 1e-3);  // a prior counts
+  EXPECT_NEAR(map.lanes[0].path.front().position.y(), 0.3, 1e-12);
 }
 
 /// Near the road and far from it, with priorities that are all above 0 and mostly used again.
