@@ -76,13 +76,17 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
   const bool forgotten = last_paint_ && to_seconds(localized.stamp - *last_paint_) > kForgetTime;
   const bool gap = last_ && to_seconds(localized.stamp - last_->stamp) > kLongestGap;
   const bool broken = !filter_.state().allFinite() || !filter_.covariance().allFinite();
-  // Without paint there is nothing to tell bias from place by.
-  if (!last_ || !informed() || forgotten || gap || broken || has_jumped(*last_, localized) ||
-      localized.stamp <= last_->stamp) {
+  if (last_ && informed() &&
+      (forgotten || gap || broken || has_jumped(*last_, localized) || localized.stamp <= last_->stamp)) {
     start(localized);
+  }
+  if (!last_ || !informed()) {  // nothing to tell bias from place by
+    last_ = localized;
     return;
   }
-  follow_odometry(localized, param.decay_time);
+  const double dt = to_seconds(localized.stamp - last_->stamp);
+  if (to_seconds(localized.stamp - *last_paint_) > kHoldTime) decay(std::exp(-dt / param.decay_time));
+  follow_odometry(localized, dt);
   follow_localization(localized);
   last_ = localized;
   const Filter::State& x = filter_.state();
@@ -96,57 +100,66 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
   }
 }
 
-void LaneEstimator::follow_odometry(const VehicleState& to, double decay_time) {
-  const double dt = to_seconds(to.stamp - last_->stamp);
-  const double way = 0.5 * (last_->speed + to.speed) * dt, turn = 0.5 * (last_->yaw_rate + to.yaw_rate) * dt;
-  const double unseen = to_seconds(to.stamp - *last_paint_);
-  const double kept = unseen > kHoldTime ? std::exp(-dt / decay_time) : 1.0;
-
-  using Part = Eigen::Matrix<double, kFirstKnot, kFirstKnot>;
-  Eigen::Matrix<double, kFirstKnot, 1> x = filter_.state().head<kFirstKnot>();
-  const double heading = x[kHeading] + 0.5 * turn;
-  const Point2 ahead(std::cos(heading), std::sin(heading)), left = left_of(ahead);
-  Part f = f.Identity(), q = q.Zero();
-  f.block<2, 1>(kX, kHeading) = way * left;
-  f.block<3, 3>(kX, kBiasX) = (1.0 - kept) * Eigen::Matrix3d::Identity();  // back to what localization says
+/// Back to what localization says, and to the lane that is expected.
+void LaneEstimator::decay(double kept) {
+  using Part = Eigen::Matrix<double, kLeft, kLeft>;
+  Part f = f.Identity();
+  f.block<3, 3>(kX, kBiasX) = (1.0 - kept) * Eigen::Matrix3d::Identity();
   f.block<3, 3>(kBiasX, kBiasX) = kept * Eigen::Matrix3d::Identity();
-  f.block<2, 2>(kLeft, kLeft) = HalfWidthModel::transition(std::abs(way));
-  x.segment<3>(kX) += (1.0 - kept) * x.segment<3>(kBiasX) + Vector3(way * ahead.x(), way * ahead.y(), turn);
-  x.segment<3>(kBiasX) *= kept;
-  x.segment<2>(kLeft) = (f.block<2, 2>(kLeft, kLeft) * x.segment<2>(kLeft)).eval();
-  x.segment<2>(kLeft).array() += (1.0 - kept) * (half_width_ - x.segment<2>(kLeft).array());
+  filter_.predict_part<kX, kLeft>(f * filter_.state().head<kLeft>(), f, Part::Zero());
+  auto half_widths = filter_.state().segment<2>(kLeft).array();
+  half_widths += (1.0 - kept) * (half_width_ - half_widths);
+}
+
+void LaneEstimator::follow_odometry(const VehicleState& to, double dt) {
+  const double way = 0.5 * (last_->speed + to.speed) * dt, turn = 0.5 * (last_->yaw_rate + to.yaw_rate) * dt;
+  const Vector3 pose = filter_.state().segment<3>(kX);
+  const double heading = pose[2] + 0.5 * turn;
+  const Point2 ahead(std::cos(heading), std::sin(heading)), left = left_of(ahead);
+  Eigen::Matrix3d f = f.Identity(), q = q.Zero();
+  f.block<2, 1>(0, 2) = way * left;
   const double along = kSpeedWalk * kSpeedWalk * dt + kSpeedScale * kSpeedScale * std::abs(to.speed * way);
   const double aside = kSlipWalk * kSlipWalk * dt;
-  q.block<2, 2>(kX, kX) = along * ahead * ahead.transpose() + aside * left * left.transpose();
-  q(kHeading, kHeading) = kHeadingWalk * kHeadingWalk * dt;
-  q(kBiasX, kBiasX) = q(kBiasY, kBiasY) = kBiasWalk * kBiasWalk * dt;
-  q(kBiasHeading, kBiasHeading) = kHeadingBiasWalk * kHeadingBiasWalk * dt;
-  q.block<2, 2>(kLeft, kLeft) = HalfWidthModel::noise(std::abs(way));
-  filter_.predict_first<kFirstKnot>(x, f, q);
+  q.block<2, 2>(0, 0) = along * ahead * ahead.transpose() + aside * left * left.transpose();
+  q(2, 2) = kHeadingWalk * kHeadingWalk * dt;
+  filter_.predict_part<kX, 3>(pose + Vector3(way * ahead.x(), way * ahead.y(), turn), f, q);
+
+  const Vector3 bias_walk(kBiasWalk, kBiasWalk, kHeadingBiasWalk);
+  filter_.covariance().diagonal().segment<3>(kBiasX) += dt * bias_walk.cwiseAbs2();
+
+  const Eigen::Matrix2d kept = HalfWidthModel::transition(std::abs(way));
+  filter_.predict_part<kLeft, 2>(kept * filter_.state().segment<2>(kLeft), kept,
+                                 HalfWidthModel::noise(std::abs(way)));
 }
 
 void LaneEstimator::follow_localization(const VehicleState& localized) {
   Filter::State& x = filter_.state();
+  Filter::Covariance& p = filter_.covariance();
   const Point2 position = localized.map_from_base.position() - origin_;
   const auto innovation = [&]() -> Vector3 {
     return {position.x() - x[kX] - x[kBiasX], position.y() - x[kY] - x[kBiasY],
             angle_difference(localized.map_from_base.heading(), x[kHeading] + x[kBiasHeading])};
   };
-  Jacobian<3> h = h.Zero();
-  h.block<3, 3>(0, kX) = h.block<3, 3>(0, kBiasX) = Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d r =
-      Vector3(kPositionNoise * kPositionNoise, kPositionNoise * kPositionNoise, kHeadingNoise * kHeadingNoise)
-          .asDiagonal();
+  const Vector3 noise(kPositionNoise, kPositionNoise, kHeadingNoise);
+  const auto expect = [&] {  // pose plus bias
+    Filter::Expected<3> expected;
+    expected.cross = p.middleCols<3>(kX) + p.middleCols<3>(kBiasX);
+    expected.covariance = expected.cross.middleRows<3>(kX) + expected.cross.middleRows<3>(kBiasX);
+    expected.covariance.diagonal() += noise.cwiseAbs2();
+    return expected;
+  };
+  Filter::Expected<3> expected = expect();
   const Vector3 gap = innovation();
-  if (filter_.squared_distance(gap, h, r) > kJumpDistance) {
+  if (expected.squared_distance(gap) > kJumpDistance) {
     // Vehicles do not jump, localization does: its bias is another one now. Headings are another matter:
     // localization's hardly drift, and odometry's do where a yaw rate is wrong.
     x.segment<2>(kBiasX) += gap.head<2>();
     x[kHeading] += gap[2];
-    for (int i = 0; i < 2; ++i) filter_.covariance()(kBiasX + i, kBiasX + i) += 0.05 * gap[i] * gap[i];
-    filter_.covariance()(kHeading, kHeading) += gap[2] * gap[2];
+    for (int i = 0; i < 2; ++i) p(kBiasX + i, kBiasX + i) += 0.05 * gap[i] * gap[i];
+    p(kHeading, kHeading) += gap[2] * gap[2];
+    expected = expect();
   }
-  filter_.correct(innovation(), h, r);
+  filter_.correct(innovation(), expected);
 }
 
 /// [m] the same as line_s_ for a place that is s along the line; the nearest one, on a lap.
@@ -157,6 +170,7 @@ double LaneEstimator::s_along(const NavigationLine& line, double s) const {
 
 void LaneEstimator::follow_line(const NavigationLine& line, const LineProjection& projection) {
   if (!last_) return;
+  if (!informed()) start(*last_);
   const double moved = s_along(line, projection.s) - line_s_;
   last_projected_s_ = projection.s;
   constexpr int kKnots = OffsetProfile::kKnots;

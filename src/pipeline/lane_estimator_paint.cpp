@@ -66,7 +66,8 @@ std::optional<LaneEstimator::Measurement> LaneEstimator::measure(const PaintSamp
                            row.tail<OffsetProfile::kKnots>().dot(x.tail<OffsetProfile::kKnots>());
   }
   if (seen < 2) return std::nullopt;
-  result.squared_distance = filter_.squared_distance(result.innovation, result.jacobian, result.covariance);
+  result.expected = filter_.expect(result.jacobian, result.covariance);
+  result.squared_distance = result.expected.squared_distance(result.innovation);
   return result;
 }
 
@@ -79,10 +80,8 @@ bool LaneEstimator::fits(const Measurement& measurement) const {
 }
 
 double LaneEstimator::mean_stddev(const Measurement& measurement) const {
-  const Jacobian<1> h = measurement.weights().transpose() * measurement.jacobian;
   const auto weights = measurement.weights();
-  return std::sqrt((h * filter_.covariance() * h.transpose() +
-                    weights.transpose() * measurement.covariance * weights)(0, 0));
+  return std::sqrt(weights.dot(measurement.expected.covariance * weights));
 }
 
 Eigen::Matrix<double, kPaintSamples, 1> LaneEstimator::Measurement::weights() const {
@@ -143,7 +142,7 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
     if (any) measure_again(one, line, projection);  // the surer side has moved the state
     if (!one.measurement) continue;
     if (fits(*one.measurement)) {
-      filter_.correct(one.measurement->innovation, one.measurement->jacobian, one.measurement->covariance);
+      filter_.correct(one.measurement->innovation, one.measurement->expected);
       if (!any) left_paint_ = right_paint_ = BoundaryType::kUnknown;
       (one.side == kLeft ? left_paint_ : right_paint_) = one.paint->type;
       paint_range_ = any ? std::max(paint_range_, one.paint->to) : one.paint->to;
@@ -187,7 +186,8 @@ void LaneEstimator::see_next(const std::optional<PaintSamples>& paint, Index sid
   }
   if (!border.known) border.distance = KalmanFilter<1>(Scalar::Constant(distance), noise);
   border.distance.predict(Scalar::Ones(), Scalar::Constant(kNextWalk * kNextWalk));
-  border.distance.correct(Scalar::Constant(distance - border.distance.state()[0]), Scalar::Ones(), noise);
+  border.distance.correct(Scalar(distance - border.distance.state()[0]),
+                          border.distance.expect(Scalar::Ones(), noise));
   border.known = true;
   border.type = paint->type;
 }

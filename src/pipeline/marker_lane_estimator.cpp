@@ -77,7 +77,8 @@ void MarkerLaneEstimator::follow_driver(const VehicleState& vehicle, double dt) 
   h(0, kSlope) = h(1, kCurvature) = 1.0;
   const Eigen::Vector2d driven(0.0, vehicle.yaw_rate / vehicle.speed);
   const Eigen::Vector2d noise(kDriverSlope * kDriverSlope, kDriverCurvature * kDriverCurvature);
-  filter_.correct(driven - h * filter_.state(), h, Eigen::Matrix2d((noise / dt).asDiagonal()));
+  const Eigen::Matrix2d covariance = (noise / dt).asDiagonal();
+  filter_.correct<2>(driven - h * filter_.state(), filter_.expect(h, covariance));
 }
 
 MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples& paint, Index side) const {
@@ -130,7 +131,7 @@ std::vector<std::string> MarkerLaneEstimator::correct(const SeenSides& sides, Ti
   if (sides.right) seen.push_back({kRight, &*sides.right, "right", 0.0});
   const auto distance_of = [&](const Seen& one) {
     const Measurement m = measure(*one.paint, one.side);
-    return filter_.squared_distance(m.innovation, m.jacobian, one.paint->covariance);
+    return filter_.expect(m.jacobian, one.paint->covariance).squared_distance(m.innovation);
   };
   for (Seen& one : seen) one.distance = distance_of(one);
   if (seen.size() == 2 && seen[1].distance < seen[0].distance) std::swap(seen[0], seen[1]);
@@ -142,7 +143,7 @@ std::vector<std::string> MarkerLaneEstimator::correct(const SeenSides& sides, Ti
       continue;
     }
     const Measurement m = measure(*one.paint, one.side);
-    filter_.correct(m.innovation, m.jacobian, one.paint->covariance);
+    filter_.correct(m.innovation, filter_.expect(m.jacobian, one.paint->covariance));
     if (!any) left_paint_ = right_paint_ = BoundaryType::kUnknown;
     (one.side == kLeft ? left_paint_ : right_paint_) = one.paint->type;
     seen_to_ = any ? std::max(seen_to_, one.paint->to) : one.paint->to;

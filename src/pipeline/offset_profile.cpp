@@ -1,7 +1,6 @@
 #include "relative_map/pipeline/offset_profile.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 
 namespace relative_map::core {
@@ -51,7 +50,6 @@ OffsetProfile::Covariance OffsetProfile::prior() {
 Eigen::Matrix<double, 1, OffsetProfile::kKnots> OffsetProfile::shares(double place) {
   Eigen::Matrix<double, 1, kKnots> row = Eigen::Matrix<double, 1, kKnots>::Zero();
   if (!has_shares(place, kKnots, kBeyond)) return row;
-  const Next step = next();
   const int first = static_cast<int>(std::floor(place)) - 1;
   for (int knot = first; knot < first + 4; ++knot) {
     const double share = basis(place - knot);
@@ -62,6 +60,7 @@ Eigen::Matrix<double, 1, OffsetProfile::kKnots> OffsetProfile::shares(double pla
     const bool ahead = knot >= kKnots;
     const int steps = ahead ? knot - kKnots + 1 : -knot;
     if (steps > kBeyond) continue;
+    const Next step = next();
     // The share of the two end knots in the one that many steps past them.
     double near = 1.0, far = 0.0;
     for (int i = 0; i < steps; ++i) {
@@ -75,25 +74,29 @@ Eigen::Matrix<double, 1, OffsetProfile::kKnots> OffsetProfile::shares(double pla
   return row;
 }
 
-OffsetProfile::OffsetProfile(const Knots& knots) : zero_(knots.isZero(0.0)) {
-  knots_.segment<kKnots>(kBeyond) = knots;
+OffsetProfile::OffsetProfile(const Knots& knots) {
+  constexpr int kZeros = 3, kAll = kKnots + 2 * (kBeyond + kZeros), kBegin = kZeros + kBeyond;
+  Eigen::Matrix<double, kAll, 1> all = all.Zero();
+  all.segment<kKnots>(kBegin) = knots;
   const Next step = next();
-  for (int i = kBeyond - 1; i >= 0; --i) {
-    knots_[i] = step.from_near * knots_[i + 1] + step.from_far * knots_[i + 2];
+  for (int i = kBegin - 1; i >= kZeros; --i)
+    all[i] = step.from_near * all[i + 1] + step.from_far * all[i + 2];
+  for (int i = kBegin + kKnots; i < kAll - kZeros; ++i) {
+    all[i] = step.from_near * all[i - 1] + step.from_far * all[i - 2];
   }
-  for (int i = kBeyond + kKnots; i < knots_.size(); ++i) {
-    knots_[i] = step.from_near * knots_[i - 1] + step.from_far * knots_[i - 2];
-  }
+  Eigen::Matrix4d basis;        // of the uniform cubic B-spline: a row for each power
+  basis << 1.0, 4.0, 1.0, 0.0,  //
+      -3.0, 0.0, 3.0, 0.0,      //
+      3.0, -6.0, 3.0, 0.0,      //
+      -1.0, 3.0, -3.0, 1.0;
+  for (int i = 0; i < kPieces; ++i) pieces_.col(i) = basis / 6.0 * all.segment<4>(i);
 }
 
 double OffsetProfile::at(double place) const {
-  if (!has_shares(place, kKnots, kBeyond)) return 0.0;
-  const int first = static_cast<int>(std::floor(place)) - 1 + kBeyond;
-  double offset = 0.0;
-  for (int knot = std::max(0, first); knot < std::min<int>(first + 4, knots_.size()); ++knot) {
-    offset += basis(place - (knot - kBeyond)) * knots_[knot];
-  }
-  return offset;
+  if (!(place >= kFirst && place < kFirst + kPieces)) return 0.0;  // NaN is nowhere either
+  const double knot = std::floor(place), u = place - knot;
+  const auto piece = pieces_.col(static_cast<int>(knot) - kFirst);
+  return piece[0] + u * (piece[1] + u * (piece[2] + u * piece[3]));
 }
 
 }  // namespace relative_map::core

@@ -1,6 +1,6 @@
 #include "relative_map/simulation/paint.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -42,15 +42,15 @@ Polyline visible_paint(const DrivePath& path, double s, std::size_t vertex, cons
 
 Cubic fit_cubic(const Polyline& points) {
   const double scale = points.back().x();  // x up to 1, so that its powers are of one size
-  Eigen::MatrixX4d powers(points.size(), 4);
-  Eigen::VectorXd y(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double x = points[i].x() / scale;
-    const auto row = static_cast<Eigen::Index>(i);
-    powers.row(row) << 1.0, x, x * x, x * x * x;
-    y[row] = points[i].y();
+  Eigen::Matrix4d a = a.Zero();
+  Eigen::Vector4d b = b.Zero();
+  for (const Point2& point : points) {
+    const double x = point.x() / scale;
+    const Eigen::Vector4d powers(1.0, x, x * x, x * x * x);
+    a += powers * powers.transpose();
+    b += powers * point.y();
   }
-  const Eigen::Vector4d c = powers.householderQr().solve(y);
+  const Eigen::Vector4d c = a.ldlt().solve(b);
   return {c[0], c[1] / scale, c[2] / (scale * scale), c[3] / (scale * scale * scale)};
 }
 

@@ -8,7 +8,8 @@ namespace relative_map::core {
 
 /// A Kalman filter over `States` numbers (Kalman 1960; the covariance in Joseph's form, multiplied out, which
 /// stays symmetric and positive whatever the gain). Models come with each call: linear ones, or the Jacobians
-/// of others at the state, with the innovation taken from the full model (the extended filter).
+/// of others at the state, with the innovation taken from the full model (the extended filter). Products are
+/// Eigen's lazy ones: matrices are small, and its others pack their operands first.
 template <int States>
 class KalmanFilter {
  public:
@@ -38,43 +39,53 @@ class KalmanFilter {
   void predict_to(const State& state, const Eigen::MatrixBase<Transition>& f,
                   const Eigen::MatrixBase<Noise>& q) {
     state_ = state;
-    covariance_ = (f * covariance_ * f.transpose()).eval() + q;
+    covariance_ = f.lazyProduct(covariance_).eval().lazyProduct(f.transpose()).eval() + q;
   }
 
-  /// Of a model that moves only the first states, the `Count` ones that `state`, F and Q are given for.
-  template <int Count, class Transition, class Noise>
-  void predict_first(const Eigen::Matrix<double, Count, 1>& state, const Eigen::MatrixBase<Transition>& f,
-                     const Eigen::MatrixBase<Noise>& q) {
-    state_.template head<Count>() = state;
-    covariance_.template topRows<Count>() = (f * covariance_.template topRows<Count>()).eval();
-    covariance_.template leftCols<Count>() = (covariance_.template leftCols<Count>() * f.transpose()).eval();
-    covariance_.template topLeftCorner<Count, Count>() += q;
+  /// Of a model that moves only some states, the `Count` ones from `First` on, which F and Q are given for.
+  template <int First, int Count, class Transition, class Noise>
+  void predict_part(const Eigen::Matrix<double, Count, 1>& state, const Eigen::MatrixBase<Transition>& f,
+                    const Eigen::MatrixBase<Noise>& q) {
+    state_.template segment<Count>(First) = state;
+    covariance_.template middleRows<Count>(First) =
+        f.lazyProduct(covariance_.template middleRows<Count>(First)).eval();
+    covariance_.template middleCols<Count>(First) =
+        covariance_.template middleCols<Count>(First).lazyProduct(f.transpose()).eval();
+    covariance_.template block<Count, Count>(First, First) += q;
   }
 
-  /// `innovation` is measured minus expected, H the Jacobian of what is expected, R the measurement's
-  /// covariance; as many rows as there are measurements.
-  template <class Innovation, class Jacobian, class Noise>
-  void correct(const Eigen::MatrixBase<Innovation>& innovation, const Eigen::MatrixBase<Jacobian>& h,
-               const Eigen::MatrixBase<Noise>& r) {
-    constexpr int kRows = Jacobian::RowsAtCompileTime;
-    const Eigen::Matrix<double, States, kRows> p_ht = covariance_ * h.transpose();
-    const Eigen::Matrix<double, kRows, kRows> s = h * p_ht + r;
-    const Eigen::Matrix<double, kRows, States> gain_transposed = s.llt().solve(p_ht.transpose());
-    const Eigen::Matrix<double, States, kRows> gain = gain_transposed.transpose();
+  /// What there is to expect of a measurement.
+  template <int Rows>
+  struct Expected {
+    Eigen::Matrix<double, States, Rows> cross;     ///< covariance of state and measurement, P H'
+    Eigen::Matrix<double, Rows, Rows> covariance;  ///< of the innovation, S = H P H' + R
+
+    /// How far an innovation is out: squared, in standard deviations (Mahalanobis).
+    double squared_distance(const Eigen::Matrix<double, Rows, 1>& innovation) const {
+      return innovation.dot(covariance.llt().solve(innovation));
+    }
+  };
+  /// H is the Jacobian of what is expected, R the measurement's covariance; as many rows as there are
+  /// measurements.
+  template <class Jacobian, class Noise>
+  Expected<Jacobian::RowsAtCompileTime> expect(const Eigen::MatrixBase<Jacobian>& h,
+                                               const Eigen::MatrixBase<Noise>& r) const {
+    Expected<Jacobian::RowsAtCompileTime> expected;
+    expected.cross = covariance_.lazyProduct(h.transpose());
+    expected.covariance = h.lazyProduct(expected.cross) + r;
+    return expected;
+  }
+  /// `innovation` is measured minus expected.
+  template <int Rows>
+  void correct(const Eigen::Matrix<double, Rows, 1>& innovation, const Expected<Rows>& expected) {
+    const Eigen::Matrix<double, Rows, Rows>& s = expected.covariance;
+    const Eigen::Matrix<double, Rows, Rows> inverse = s.llt().solve(s.Identity());
+    const Eigen::Matrix<double, States, Rows> gain = expected.cross.lazyProduct(inverse);
     state_ += gain * innovation;
-    // (I - K H) P (I - K H)' + K R K'
-    const Covariance p =
-        covariance_ - gain * p_ht.transpose() - p_ht * gain.transpose() + gain * s * gain.transpose();
-    covariance_ = 0.5 * (p + p.transpose());
-  }
-
-  /// How far an innovation is out of what is expected: squared, in standard deviations (Mahalanobis).
-  template <class Innovation, class Jacobian, class Noise>
-  double squared_distance(const Eigen::MatrixBase<Innovation>& innovation,
-                          const Eigen::MatrixBase<Jacobian>& h, const Eigen::MatrixBase<Noise>& r) const {
-    constexpr int kRows = Jacobian::RowsAtCompileTime;
-    const Eigen::Matrix<double, kRows, kRows> s = h * covariance_ * h.transpose() + r;
-    return innovation.dot(s.llt().solve(innovation));
+    // (I - K H) P (I - K H)' + K R K' = P - M K' - K M' with M = P H' - K S / 2.
+    const Eigen::Matrix<double, States, Rows> m = expected.cross - 0.5 * gain.lazyProduct(s);
+    const Covariance p = 0.5 * covariance_ - m.lazyProduct(gain.transpose());
+    covariance_ = p + p.transpose();
   }
 
   /// To be put into another form: states that end, begin, or are known anew.

@@ -73,6 +73,7 @@ class LaneEstimator {
     Eigen::Matrix<double, kPaintSamples, 1> innovation;  ///< [m]
     Jacobian<kPaintSamples> jacobian;
     Eigen::Matrix<double, kPaintSamples, kPaintSamples> covariance;
+    Filter::Expected<kPaintSamples> expected;
     double squared_distance = 0.0;
 
     Eigen::Matrix<double, kPaintSamples, 1> weights() const;  ///< of the samples in their mean
@@ -114,7 +115,8 @@ class LaneEstimator {
 
   void start(const VehicleState& localized);
   void give_up(const VehicleState& localized, const std::string& why);
-  void follow_odometry(const VehicleState& to, double decay_time);
+  void decay(double kept);
+  void follow_odometry(const VehicleState& to, double dt);
   void follow_localization(const VehicleState& localized);
   double s_along(const NavigationLine& line, double s) const;
   std::optional<Measurement> measure(const PaintSamples& paint, Index side, const NavigationLine& line,

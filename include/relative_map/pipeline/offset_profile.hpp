@@ -29,13 +29,12 @@ class OffsetProfile {
   explicit OffsetProfile(const Knots& knots);
   /// [m] left positive, at `place` in knots from the first one.
   double at(double place) const;
-  bool is_zero() const { return zero_; }
 
  private:
   static constexpr int kBeyond = 12;  ///< knots past an end that are not zero yet
+  static constexpr int kFirst = -kBeyond - 2, kPieces = kKnots + 2 * kBeyond + 3;  ///< between knots
 
-  Eigen::Matrix<double, kKnots + 2 * kBeyond, 1> knots_;
-  bool zero_;
+  Eigen::Matrix<double, 4, kPieces> pieces_;  ///< a cubic each, by the place past its knot
 };
 
 }  // namespace relative_map::core
