@@ -20,6 +20,7 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
     ros-noetic-{tf2-msgs,tf2-ros,topic-tools,urdf,visualization-msgs,robot-state-publisher,rosbash,roslaunch,rosnode}
     ros-noetic-{rosservice,rostopic})
   rviz_packages=(ros-noetic-rviz)
+  plot_packages=(ros-noetic-rosbag python3-matplotlib)
   test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} python3-matplotlib clang-format
     catkin-lint)
 else
@@ -33,6 +34,7 @@ else
     python3-{diagnostic,geometry,nav,sensor,tf2,visualization}-msgs python3-std-srvs rosbash
     ros-robot-state-publisher python3-{roslaunch,rosnode,rosservice,rostopic})
   rviz_packages=(rviz)
+  plot_packages=(python3-rosbag python3-matplotlib)
   test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-nodelet python3-rosbag
     python3-rostest librostest-dev python3-matplotlib clang-format catkin-lint)
 fi
@@ -127,6 +129,14 @@ is_free() { ! (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }
 
 free_port() {
   python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
+}
+
+# choose_port: a port for a master of our own; the usual one, as other terminals expect, if that is free.
+choose_port() {
+  port=11311
+  is_free "$port" || port=$(free_port)
+  export ROS_MASTER_URI=http://127.0.0.1:$port
+  [[ $port == 11311 ]] || say "Port 11311 is in use; in other terminals: export ROS_MASTER_URI=$ROS_MASTER_URI"
 }
 
 # start_run: marks all processes started from here on, so that stop_run finds them (roslaunch gives each node a session

@@ -1,5 +1,6 @@
 #include "vehicle_simulator.hpp"
 
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <relative_map/Chassis.h>
 #include <relative_map/LocalizationEstimate.h>
@@ -78,6 +79,7 @@ VehicleSimulator::VehicleSimulator(ros::NodeHandle nh, SimulatorParameters param
   localization_publisher_ = nh.advertise<LocalizationEstimate>("localization", 10);
   chassis_publisher_ = nh.advertise<Chassis>("chassis", 10);
   lane_markers_publisher_ = nh.advertise<LaneMarkers>("perception/lane_markers", 10);
+  truth_publisher_ = ros::NodeHandle("~").advertise<geometry_msgs::PoseStamped>("truth", 10);
   if (parameters_.publish_navigation) {
     navigation_publisher_ = nh.advertise<NavigationInfo>("navigation", 1, true);
   }
@@ -170,6 +172,20 @@ void VehicleSimulator::publish_localization() {
   message.status.code = LocalizationStatus::OK;
   localization_publisher_.publish(message);
   broadcast(localization);
+  publish_truth();
+}
+
+/// Where the vehicle really is at the stamp of the localization: what maps can be judged by.
+void VehicleSimulator::publish_truth() {
+  const core::Pose2 pose = vehicle_.map_from_base();
+  geometry_msgs::PoseStamped message;
+  message.header.stamp = stamp();
+  message.header.frame_id = parameters_.map_frame;
+  message.pose.position.x = pose.position().x();
+  message.pose.position.y = pose.position().y();
+  message.pose.orientation =
+      to_message(Eigen::Quaterniond(Eigen::AngleAxisd(pose.heading(), Eigen::Vector3d::UnitZ())));
+  truth_publisher_.publish(message);
 }
 
 /// What the localization believes, since on a vehicle nobody knows better.

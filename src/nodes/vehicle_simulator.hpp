@@ -38,6 +38,7 @@ class VehicleSimulator {
 
   void publish_navigation();
   void publish_localization();
+  void publish_truth();
   void publish_chassis();
   void take_image();
   void publish_lane_markers(core::Time until);
@@ -53,7 +54,8 @@ class VehicleSimulator {
   std::deque<LateMarkers> late_markers_;  ///< by rising time: of images that are still looked at
   core::Time start_{};                    ///< when the vehicle's time was 0
   std::optional<core::Time> stopped_at_;  ///< when it came to the end of the line
-  ros::Publisher navigation_publisher_, localization_publisher_, chassis_publisher_, lane_markers_publisher_;
+  ros::Publisher navigation_publisher_, localization_publisher_, chassis_publisher_, lane_markers_publisher_,
+      truth_publisher_;
   tf2_ros::TransformBroadcaster broadcaster_;
   tf2_ros::StaticTransformBroadcaster static_broadcaster_;
 };
