@@ -10,6 +10,8 @@
 #include <sstream>
 
 #include "navigation_line_bag.hpp"
+#include "relative_map/io/whole_file.hpp"
+#include "whole_bag.hpp"
 
 namespace relative_map {
 
@@ -135,6 +137,12 @@ void save_line(const std::string& path, const core::LineFile& file, const std::s
                const core::WriteOptions& options, const std::string& topic) {
   if (is_bag(path, format)) return write_path_bag(path, topic, file);
   core::write_line(path, format_for(path, format), file, options);
+}
+
+void expect_savable(const std::string& path, const std::string& format) {
+  if (is_bag(path, format)) return expect_bag_writable(path);
+  format_for(path, format);
+  core::expect_writable(path);
 }
 
 void print_written(const std::string& path, const core::RecordedLine& line) {
