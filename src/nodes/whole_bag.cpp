@@ -16,6 +16,33 @@ void expect_bag_writable(const std::string& path) {
   throw std::runtime_error("cannot write " + path + ": a bag needs a file, and this is a device or a pipe");
 }
 
+namespace {
+
+sigset_t interrupts() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
+}  // namespace
+
+DeferredInterrupts::DeferredInterrupts() {
+  const sigset_t set = interrupts();
+  pthread_sigmask(SIG_BLOCK, &set, &before_);
+}
+
+DeferredInterrupts::~DeferredInterrupts() {
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+bool DeferredInterrupts::pending() const {
+  sigset_t waiting;
+  sigpending(&waiting);
+  return sigismember(&waiting, SIGINT) == 1 || sigismember(&waiting, SIGTERM) == 1;
+}
+
 WholeBag::WholeBag(const std::string& path) : path_(path), temporary_(core::temporary_name(path)) {
   expect_bag_writable(path);
   bag_ = std::make_unique<rosbag::Bag>();

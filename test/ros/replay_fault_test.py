@@ -2,11 +2,18 @@
 """What replay does with what it can't replay: it says so in one line, and leaves all files as they were."""
 
 import os
+import resource
+import signal
+import stat
+import subprocess
 
+import roslib.packages
+import rospy
 import rostest
 from std_msgs.msg import String
 
-from replay_support import START, ReplayTest, Run
+import vehicle_messages
+from replay_support import START, ReplayTest, Run, drive
 
 
 class ReplayFaults(ReplayTest):
@@ -85,7 +92,50 @@ class ReplayFaults(ReplayTest):
         self.write('file', '')
         os.mkdir(self.path('folder'))
         for target in ('no_folder/maps.bag', 'file/maps.bag', 'folder'):
-            self.expect_fault(target, "can't be written", words=('in.bag', target))
+            self.expect_fault('cannot write ' + target, words=('in.bag', target))
+        self.expect_fault('cannot write /dev/full', 'device', words=('in.bag', '/dev/full'))
+        self.assertTrue(stat.S_ISCHR(os.stat('/dev/full').st_mode))
+
+    def test_a_file_that_grows_too_large(self):
+        self.record()
+        self.write('out.bag', 'precious')
+        before = self.files()
+        run = Run(['in.bag', 'out.bag'], self.folder, restore_signals=False,  # SIGXFSZ stays ignored, as by Python
+                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536)))
+        self.assertEqual(run.code, 1)
+        self.assertEqual(run.errors, "replay: in.bag: can't be replayed: cannot write out.bag: File too large\n")
+        self.assertEqual(self.files(), before)
+
+    def test_an_interrupt(self):
+        entries = list(drive())
+        for step in range(20000):  # half an hour of nothing but speeds: many empty maps
+            stamp = START + rospy.Duration(0, 100000000) * (20 + step)
+            entries.append(('/chassis', vehicle_messages.chassis(stamp), stamp))
+        self.record(entries=entries)
+        self.write('out.bag', 'precious')
+        before = self.files()
+        command = [roslib.packages.find_node('relative_map', 'replay')[0], 'in.bag', 'out.bag']
+        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        while len(self.files()) == len(before):
+            self.assertIsNone(process.poll(), 'it ended before it could be interrupted')
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=20)
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertEqual(self.files(), before)
+
+    def test_a_full_disk(self):
+        self.record()
+        os.mkdir(self.path('disk'))
+        mount = ['mount', '-t', 'tmpfs', '-o', 'size=64k', 'tmpfs', self.path('disk')]
+        if subprocess.run(mount, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode != 0:
+            self.skipTest('mounting a disk is not allowed here')
+        self.addCleanup(subprocess.run, ['umount', self.path('disk')])
+        self.write('disk/old.bag', 'precious')
+        for name in ('old.bag', 'new.bag'):
+            self.expect_fault('cannot write disk/' + name, 'No space left on device', words=('in.bag', 'disk/' + name))
+            self.assertEqual(os.listdir(self.path('disk')), ['old.bag'])
+        with open(self.path('disk/old.bag')) as file:
+            self.assertEqual(file.read(), 'precious')
 
     def test_an_output_that_is_the_input(self):
         self.record()

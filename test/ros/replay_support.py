@@ -45,11 +45,11 @@ def tick_times(count=TICKS, rate=10):
 class Run:
     """A finished run of replay, without a master to ask."""
 
-    def __init__(self, words, folder):
+    def __init__(self, words, folder, **options):
         environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:1')
         finished = subprocess.run([roslib.packages.find_node('relative_map', 'replay')[0]] + words, cwd=folder,
                                   env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  universal_newlines=True, timeout=60)
+                                  universal_newlines=True, timeout=60, **options)
         self.code, self.output, self.errors = finished.returncode, finished.stdout, finished.stderr
 
 
