@@ -18,6 +18,7 @@
 
 #include "bag_input.hpp"
 #include "relative_map/ros/diagnostics.hpp"
+#include "relative_map/ros/line_loader.hpp"
 #include "relative_map/ros/map_engine.hpp"
 #include "whole_bag.hpp"
 
@@ -31,7 +32,9 @@ constexpr const char* kUsage =
     "through\n"
     "the map's pipeline and writes the maps to OUT.bag on /relative_map, each at its tick's time.\n"
     "\n"
-    "  --config FILE   parameters as in config/relative_map.yaml\n"
+    "  --config FILE   parameters as in config/relative_map.yaml; its navigation_lines are driven on until "
+    "IN.bag "
+    "has others\n"
     "  --urdf FILE     the vehicle, for its footprint\n"
     "\n"
     "A pause of more than a minute without input, as where a clock was set, gets maps for its first minute "
@@ -110,6 +113,11 @@ class Replay {
  public:
   Replay(const NodeConfig& config, const rosbag::Bag& input, WholeBag& output)
       : config_(config), input_(input), output_(output), engine_(config, link_transforms(transforms_)) {}
+
+  /// Drives on these until the bag has others.
+  void set_lines(const std::shared_ptr<const core::NavigationLines>& lines) {
+    engine_.set_navigation_lines(lines);
+  }
 
   void run() {
     load_static_transforms(input_, transforms_);
@@ -193,16 +201,29 @@ class Replay {
   std::map<std::string, std::string> mistyped_;  ///< topic to type
 };
 
+/// Those that the configuration names, as the node loads them; null: none.
+std::shared_ptr<const core::NavigationLines> configured_lines(const std::string& config_file,
+                                                              const NodeConfig& config) {
+  const std::vector<std::string> files =
+      config_file.empty() ? std::vector<std::string>() : line_files(config_file);
+  if (files.empty()) return nullptr;
+  const auto lines = MapEngine::prepare(to_message(load_lines(files, "")), config.pipeline);
+  expect_all_loaded(*lines, files.size());
+  return lines;
+}
+
 void run(const Arguments& arguments) {
   const ParameterSet parameters = arguments.config.empty() ? ParameterSet() : read_yaml(arguments.config);
   const std::string urdf = arguments.urdf.empty() ? "" : read_file(arguments.urdf);
   const NodeConfig config = make_node_config(parameters, urdf);
+  const auto lines = configured_lines(arguments.config, config);
 
   expect_bag_writable(arguments.output);
   rosbag::Bag input;
   open_bag(arguments.input, input);
   WholeBag output(arguments.output);
   Replay replay(config, input, output);
+  if (lines) replay.set_lines(lines);
   const auto start = std::chrono::steady_clock::now();
   try {
     replay.run();

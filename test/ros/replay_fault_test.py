@@ -173,6 +173,17 @@ class ReplayFaults(ReplayTest):
         self.expect_fault("rate is 0", 'ratte is not a parameter', "map_param/default_left_width is 'wide'",
                           words=('in.bag', 'out.bag', '--config', 'config.yaml'), lines=4)
 
+    def test_lines_of_the_configuration_that_cannot_be_loaded(self):
+        self.record()
+        words = ('in.bag', 'out.bag', '--config', 'config.yaml')
+        self.write('config.yaml', 'navigation_lines: [absent.smoothed]\n')
+        self.expect_fault('absent.smoothed: cannot be opened', words=words)
+        self.write('config.yaml', 'navigation_lines: {a: b}\n')
+        self.expect_fault('config.yaml: navigation_lines must be a list of files', words=words)
+        self.write('config.yaml', 'navigation_lines: [short.smoothed]\n')
+        self.write('short.smoothed', '{"x": 1.0, "y": 2.0}\n')
+        self.expect_fault('short', words=words)
+
     def test_a_bad_urdf(self):
         self.record()
         words = ('in.bag', 'out.bag', '--urdf', 'car.urdf')
