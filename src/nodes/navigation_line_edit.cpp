@@ -166,7 +166,8 @@ Example: navigation_line close lap.smoothed loop.smoothed
 
 const Command kOffset = {"offset", "a parallel lane", R"(Usage: navigation_line offset IN OUT --distance D
 
-Smooth the line first: noise has curves that no parallel can follow.
+Smooth the line first: noise has curves that no parallel can follow. A parallel that would fold, or cross itself where
+the line comes near to itself, is refused with the place.
 
   --distance D   [m] to the left; negative: to the right
 
