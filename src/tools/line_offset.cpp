@@ -12,8 +12,6 @@ namespace relative_map::core {
 namespace {
 
 constexpr double kMinStretch = 0.1;  // a parallel's length, by the line's: less is a fold, nearly
-constexpr double kSameWay =
-    0.5;  // [rad] parts of a line that run together keep their distance, offset or not
 
 std::string metres(double value) {
   std::ostringstream text;
@@ -33,7 +31,6 @@ void expect_no_crossing(const EditableLine& line, const EditableLine& parallel, 
   const std::vector<SelfCrossing> own = self_crossings(line.points, line.ends);
   for (const SelfCrossing& crossing : self_crossings(parallel.points, parallel.ends)) {
     const double angle = angle_of(crossing, path);
-    if (angle < kSameWay) continue;
     // Where the line crosses itself the parallel does, too, a bit before or after.
     const double reach = 2.0 * std::abs(distance) * (1.0 + std::tan(0.5 * angle));
     const auto near = [&](std::size_t a, std::size_t b) { return std::abs(path[a].s - path[b].s) < reach; };
