@@ -2,6 +2,7 @@
 """Bad input to `navigation_line`: one sentence, an exit code that is not 0, and no file harmed."""
 
 import os
+import re
 import subprocess
 
 import rospy
@@ -135,7 +136,21 @@ class NavigationLineFaults(ToolTest):
     def test_a_bound_that_cannot_be_held(self):
         points = straight(100.0)
         self.write('step.smoothed', smoothed(points[:100] + [(x, y + 2.0) for x, y in points[100:]]))
+        run = self.run_tool('smooth', 'step.smoothed', 'old.smoothed')
         self.expect_fault('smooth', 'step.smoothed', 'old.smoothed', says=('cannot be held at s = ',))
+        advice = re.search(r'; (--bound [0-9.]+ --follow [0-9.]+) would do\n$', run.stderr)
+        self.assertTrue(advice, run.stderr)
+        self.expect('smooth', 'step.smoothed', 'new.smoothed', *advice.group(1).split())
+        self.write('arc.smoothed', smoothed([way(step) for step in range(300)]))
+        self.expect_fault('smooth', 'arc.smoothed', 'old.smoothed', '--max-curvature', '0.001',
+                          says=('cannot be held at s = ', 'would have to bend by 0.01 1/m', 'nor is any bound'))
+
+    def test_an_output_that_cannot_be_written_is_refused_before_the_work(self):
+        self.write('bad.smoothed', 'no line\n')
+        for command in (('record', 'bad.smoothed'), ('smooth', 'bad.smoothed'), ('close', 'bad.smoothed'),
+                        ('convert', 'bad.smoothed'), ('join', 'bad.smoothed', 'bad.smoothed')):
+            self.expect_fault(*command, 'absent/line.smoothed', says=('cannot write absent/line.smoothed',))
+            self.expect_fault(*command, 'line.dat', says=('its format is not known',), code=2)
 
     def test_edits_that_cannot_be_done(self):
         self.expect_fault('close', 'good.smoothed', 'old.smoothed', says=('good.smoothed', 'the ends are 50.00 m apart'))
