@@ -86,11 +86,13 @@ std::size_t check_file(const std::string& path, const core::LineFile& file,
 }
 
 int run_check(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--max-gap", "--max-curvature", "--utm", "--origin", "--frame"});
+  const CommandLine line(
+      words, {"--max-gap", "--max-curvature", "--max-curvature-rate", "--utm", "--origin", "--frame"});
   const Words& files = line.files(1, 1000, "one or more files");
   core::LineCheckParam param;
   param.max_gap = line.number("--max-gap", param.max_gap, 0.01, 1e4);
   param.max_curvature = line.number("--max-curvature", param.max_curvature, 1e-3, 10.0);
+  param.max_curvature_rate = line.number("--max-curvature-rate", param.max_curvature_rate, 1e-3, 100.0);
   core::LineHeader expected{line.text("--frame"), reference_of(line)};
   std::string expected_by = "this call";
   std::size_t faults = 0;
@@ -143,11 +145,13 @@ const Command kCheck = {"check", "is a file fit to be driven on?",
                         R"(Usage: navigation_line check FILE... [OPTION]...
 
 Lists every fault with its place: gaps, kinks, duplicate points, s or a line that goes backward, curvature above the
-vehicle's limit, a line beside itself, coordinates that can't be of their zone, files that don't fit to each other.
+vehicle's limit, curvature that changes faster than the vehicle can steer (at up to 15 m/s, and 3 m/s² sideways), also at
+the seam of a loop, a line beside itself, coordinates that can't be of their zone, files that don't fit to each other.
 Exit code 0: none; 1: some.
 
   --max-gap D              [m] between points (5)
   --max-curvature K        [1/m] that the vehicle can drive (0.25)
+  --max-curvature-rate R   [1/(m s)] that its steering can change that by (0.3)
   --utm ZONE, --origin LAT,LON[,ALT], --frame NAME   what the files should be in
 
 Example: navigation_line check left.smoothed middle.smoothed right.smoothed --utm 50N
