@@ -2,8 +2,12 @@
 
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <map>
 #include <stdexcept>
 
@@ -30,13 +34,19 @@ std::string listed(const std::map<std::string, std::string>& topics) {
 }  // namespace
 
 void open_bag(const std::string& path, rosbag::Bag& bag) {
+  const auto refuse = [&path](const std::string& why) {
+    throw std::runtime_error(path + ": not a readable bag: " + why);
+  };
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) refuse("it is a folder");
+  if (access(path.c_str(), R_OK) != 0) refuse(std::strerror(errno));
+  if (std::filesystem::file_size(path, error) == 0 && !error) refuse("it is empty");
   try {
     bag.open(path, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {
-    throw std::runtime_error(
-        path + ": not a readable bag: it is cut off, and has no index; run rosbag reindex on it");
+    refuse("it was cut off, and has no index; rosbag reindex may save it");
   } catch (const rosbag::BagException& fault) {
-    throw std::runtime_error(path + ": not a readable bag: " + fault.what());
+    refuse(std::string("it was cut off, or is no bag: ") + fault.what());
   }
 }
 

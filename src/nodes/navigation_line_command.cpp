@@ -34,7 +34,9 @@ core::LineFormat format_for(const std::string& path, const std::string& format) 
   if (known) return *known;
   if (!format.empty())
     throw UsageError("'" + format + "' is no format: smoothed, one-line, csv, gpx, geojson, bag");
-  throw UsageError(path + ": its format is not known by its extension: name it by --from or --to");
+  throw UsageError(path +
+                   ": its format is not known by its extension, which may be .smoothed, .json, .csv, .gpx, "
+                   ".geojson or .bag");
 }
 
 bool is_bag(const std::string& path, const std::string& format) {

@@ -7,7 +7,7 @@ import signal
 import stat
 import subprocess
 
-import roslib.packages
+import other_user
 import rospy
 import rostest
 from std_msgs.msg import String
@@ -114,7 +114,7 @@ class ReplayFaults(ReplayTest):
         self.record(entries=entries)
         self.write('out.bag', 'precious')
         before = self.files()
-        command = [roslib.packages.find_node('relative_map', 'replay')[0], 'in.bag', 'out.bag']
+        command = [self.tool(), 'in.bag', 'out.bag']
         process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         while len(self.files()) == len(before):
             self.assertIsNone(process.poll(), 'it ended before it could be interrupted')
@@ -136,6 +136,23 @@ class ReplayFaults(ReplayTest):
             self.assertEqual(os.listdir(self.path('disk')), ['old.bag'])
         with open(self.path('disk/old.bag')) as file:
             self.assertEqual(file.read(), 'precious')
+
+    def test_no_permission(self):
+        options = other_user.options(self)
+        self.record()
+        self.write('out.bag', 'precious')
+        os.chmod(self.path('out.bag'), 0o444)
+        before = self.files()
+        for target in ('out.bag', 'new.bag'):
+            if target == 'new.bag':
+                os.chmod(self.folder, 0o555)
+            run = Run(['in.bag', target], self.folder, **options)
+            self.assertEqual((run.code, run.errors), (1, 'replay: cannot write %s: Permission denied\n' % target))
+        os.chmod(self.folder, 0o777)
+        self.assertEqual(self.files(), before)
+        os.chmod(self.path('in.bag'), 0)
+        run = Run(['in.bag', 'new.bag'], self.folder, **options)
+        self.assertEqual((run.code, run.errors), (1, 'replay: in.bag: not a readable bag: Permission denied\n'))
 
     def test_an_output_that_is_the_input(self):
         self.record()
