@@ -79,13 +79,12 @@ std::size_t points_of_lap(const PathPoints& points, double half_width) {
   return points.size();
 }
 
-/// Drops what comes too near to the start, so that the stitch goes forward.
-void trim_overlap(PathPoints& points, double spacing) {
-  const PathPoint first = points.front();
-  while (points.size() > 3 &&
-         (first.position - points.back().position).dot(first.direction) < 0.3 * spacing) {
-    points.pop_back();
-  }
+/// How many of the first `end` points are left without those that come too near to the start, so that the
+/// stitch goes forward.
+std::size_t without_overlap(const PathPoints& points, std::size_t end, double spacing) {
+  const PathPoint& first = points.front();
+  while (end > 0 && (first.position - points[end - 1].position).dot(first.direction) < 0.3 * spacing) --end;
+  return end;
 }
 
 /// Spreads the sideways error at the seam over the end of the lap.
@@ -118,9 +117,10 @@ bool stitch(NavigationLine& line, double half_width) {
   const bool ends_meet = std::abs(cross(along, gap)) <= half_width && gap.dot(along) <= gap_ahead &&
                          gap.dot(along) >= -half_width;
   if (!ends_meet || std::abs(turn) > kMaxStitchTurn) return false;
+  const std::size_t lap_end = without_overlap(points, end, spacing);
+  if (lap_end < 4) return false;  // there and back, it goes round nothing
 
-  points.resize(end);
-  trim_overlap(points, spacing);
+  points.resize(lap_end);
   blend_seam(points, points.back().s);
   compute_arc_length(points);
   line.ends = Ends::kClosed;
