@@ -97,6 +97,7 @@ void settle_direction(Checked<Localization>& checked) {
 
 void limit_motion(Checked<Localization>& checked) {
   Localization& input = checked.input;
+  if (input.linear_velocity.isZero(0.0)) input.linear_velocity.setConstant(kNaN);  // never filled, or at rest
   const double speed = input.linear_velocity.head<2>().norm();
   if (!(speed <= kMaxSpeed)) {
     checked.remarks.push_back(text("localization: pose.linear_velocity is ", speed, " m/s: ignored"));

@@ -147,7 +147,10 @@ std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) 
   add_remarks(localization_->remarks);
   if (chassis_) add_remarks(chassis_->remarks);
   add_remarks(marker_remarks_);
-  return make_vehicle_state(localization_->input, fresh_chassis(now));
+  auto state = make_vehicle_state(localization_->input, fresh_chassis(now));
+  auto* vehicle = std::get_if<VehicleState>(&state);
+  if (vehicle && !std::isfinite(vehicle->speed)) vehicle->speed = poses_.newest().speed;
+  return state;
 }
 
 void RelativeMapPipeline::add_remarks(const std::vector<std::string>& remarks) {

@@ -9,9 +9,11 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kJump = 5.0;                                       // [m] that no speed has to explain
-constexpr Time kKept = std::chrono::seconds(3);                     // of poses
-constexpr Time kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
+constexpr double kJump = 5.0;                                   // [m] that no speed has to explain
+constexpr double kFastest = 60.0;                               // [m/s] of a vehicle whose speed is not known
+constexpr Time kKept = std::chrono::seconds(3);                 // of poses
+constexpr Time kTurnInterval = std::chrono::milliseconds(200);  // over which a turn is measured
+constexpr Time kSpeedInterval = std::chrono::milliseconds(500);     // over which a speed is measured
 constexpr Time kZeroInterval = std::chrono::seconds(1);             // of yaw rates of exactly 0
 constexpr Time kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
 
@@ -81,8 +83,7 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
   state.stamp = base.stamp;
   state.map_from_base = Pose2(base.position.head<2>(), heading);
   const double along = base.linear_velocity.head<2>().dot(state.map_from_base.forward());
-  if (std::isfinite(along)) state.speed = along;
-  if (chassis && std::isfinite(chassis->speed)) state.speed = chassis->speed;
+  state.speed = chassis && std::isfinite(chassis->speed) ? chassis->speed : along;
   state.yaw_rate = base.angular_velocity_body.z();
   return state;
 }
@@ -90,7 +91,9 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
 bool has_jumped(const VehicleState& before, const VehicleState& after) {
   const double moved = (after.map_from_base.position() - before.map_from_base.position()).norm();
   const double seconds = std::abs(to_seconds(after.stamp - before.stamp));
-  return moved > kJump + 1.5 * seconds * std::max(std::abs(before.speed), std::abs(after.speed));
+  const double fastest =
+      std::isfinite(after.speed) ? std::max(std::abs(before.speed), std::abs(after.speed)) : kFastest;
+  return moved > kJump + 1.5 * seconds * fastest;
 }
 
 Pose2 carried_on(const VehicleState& state, double seconds) {
@@ -106,17 +109,32 @@ void PoseBuffer::add(const VehicleState& state) {
   if (state.yaw_rate != 0.0 || states_.empty()) last_turn_ = state.stamp;
   const bool never_filled = state.yaw_rate == 0.0 && state.stamp - last_turn_ >= kZeroInterval;
   states_.push_back(state);
-  if (!std::isfinite(state.yaw_rate) || never_filled) states_.back().yaw_rate = turn_rate_up_to(state);
+  if (!std::isfinite(state.yaw_rate) || never_filled) states_.back().yaw_rate = turn_rate();
+  if (!std::isfinite(state.speed)) states_.back().speed = speed_along();
   while (states_.front().stamp < state.stamp - kKept) states_.pop_front();
 }
 
-double PoseBuffer::turn_rate_up_to(const VehicleState& state) const {
-  const auto earlier = std::find_if(states_.begin(), states_.end(), [&](const VehicleState& candidate) {
-    return candidate.stamp >= state.stamp - kTurnInterval && candidate.stamp < state.stamp;
-  });
-  if (earlier == states_.end()) return 0.0;
-  return angle_difference(state.map_from_base.heading(), earlier->map_from_base.heading()) /
-         to_seconds(state.stamp - earlier->stamp);
+const VehicleState* PoseBuffer::first_since(Time stamp) const {
+  const auto found = std::find_if(states_.begin(), std::prev(states_.end()),
+                                  [&](const VehicleState& candidate) { return candidate.stamp >= stamp; });
+  return found->stamp < states_.back().stamp ? &*found : nullptr;
+}
+
+double PoseBuffer::turn_rate() const {
+  const VehicleState &now = states_.back(), *earlier = first_since(now.stamp - kTurnInterval);
+  if (!earlier) return 0.0;
+  return angle_difference(now.map_from_base.heading(), earlier->map_from_base.heading()) /
+         to_seconds(now.stamp - earlier->stamp);
+}
+
+double PoseBuffer::speed_along() const {
+  const VehicleState &now = states_.back(), *earlier = first_since(now.stamp - kSpeedInterval);
+  if (!earlier) return 0.0;
+  const Point2 way = now.map_from_base.position() - earlier->map_from_base.position();
+  const double turn = angle_difference(now.map_from_base.heading(), earlier->map_from_base.heading());
+  // A chord leads where the heading is half way.
+  return way.dot(Pose2(Point2::Zero(), now.map_from_base.heading() - 0.5 * turn).forward()) /
+         to_seconds(now.stamp - earlier->stamp);
 }
 
 std::optional<Pose2> PoseBuffer::at(Time stamp) const {

@@ -54,6 +54,14 @@ TEST(LocalizationCheck, DoesWithoutAnOrientationThatGivesNoDirectionAndSaysSo) {
   EXPECT_EQ(checked.input.heading, 1.0);
 }
 
+TEST(LocalizationCheck, TakesAVelocityOfExactlyZeroAsNotGiven) {
+  Localization localization = facing(1.0, 1.0);
+  localization.linear_velocity.setZero();
+  EXPECT_TRUE(check_localization(localization).input.linear_velocity.array().isNaN().all()) << "poses tell";
+  localization.linear_velocity.x() = 1e-9;
+  EXPECT_EQ(check_localization(localization).input.linear_velocity, localization.linear_velocity);
+}
+
 TEST(LocalizationCheck, NormalisesAndSaysSo) {
   Localization localization = facing(1.0, 1.0);
   localization.map_from_body.coeffs() *= 3.0;

@@ -101,8 +101,7 @@ TEST(VehicleState, DoesWithoutHeightVelocityAndRates) {
   localization.linear_velocity.setConstant(kNaN);
   localization.angular_velocity_body.setConstant(kNaN);
   const VehicleState state = state_of(localization);
-  EXPECT_EQ(state.speed, 0.0);
-  EXPECT_TRUE(std::isnan(state.yaw_rate)) << "the headings tell";
+  EXPECT_TRUE(std::isnan(state.speed) && std::isnan(state.yaw_rate)) << "the poses before tell";
 }
 
 TEST(VehicleState, TakesTheSpeedOfTheChassisOverTheVelocity) {
@@ -236,6 +235,20 @@ TEST(PoseBuffer, CarriesOnStraightWhereNothingIsKnownOfTheTurn) {
   state.yaw_rate = kNaN;
   buffer.add(state);
   EXPECT_NEAR((buffer.at(from_seconds(1.1))->position() - Point2(1.0, 0.0)).norm(), 0.0, 1e-9);
+}
+
+TEST(PoseBuffer, MeasuresTheSpeedOfItsPosesWhereItIsNotGiven) {
+  for (const double speed : {25.0, -3.0}) {
+    for (const double period : {0.01, 0.1, 0.2}) {  // [s]
+      PoseBuffer buffer;
+      for (double t = 0.0; t < 1.0; t += period) {
+        VehicleState state = vehicle_at(test::along_arc(Pose2(), 0.02, speed * t), t, kNaN);
+        state.yaw_rate = 0.02 * speed;
+        buffer.add(state);
+      }
+      EXPECT_NEAR(buffer.newest().speed, speed, 0.01 * std::abs(speed)) << "chords are a little short";
+    }
+  }
 }
 
 TEST(PoseBuffer, ForgetsTheFutureWhereTimeIsSetBack) {

@@ -15,7 +15,7 @@ namespace relative_map::core {
 struct VehicleState {
   Time stamp{};
   Pose2 map_from_base;
-  double speed = 0.0;     ///< [m/s] negative when reversing
+  double speed = 0.0;     ///< [m/s] negative when reversing; NaN: not given
   double yaw_rate = 0.0;  ///< [rad/s] NaN: not given
 };
 
@@ -24,7 +24,7 @@ struct VehicleState {
 Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& link_from_base);
 
 /// The plane view of a pose of base_link, or INVALID_LOCALIZATION with the field and the value.
-/// Speed is the chassis', else the velocity along the heading, else 0.
+/// Speed is the chassis', else the velocity along the heading.
 std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
                                                       const std::optional<Chassis>& chassis);
 
@@ -40,17 +40,21 @@ class PoseBuffer {
  public:
   /// A stamp at or before the newest one's replaces what came after it: time has been set back.
   /// After a jump the poses before it are forgotten: what was seen from them lies elsewhere now.
-  /// A yaw rate that is not given, or that seems never to be filled, comes from the headings of the poses
-  /// before.
+  /// A speed or a yaw rate that is not given comes from the poses before, and a yaw rate that seems never to
+  /// be filled.
   void add(const VehicleState& state);
   /// Interpolated between poses, carried on by speed and yaw rate a little beyond them; none further out.
   std::optional<Pose2> at(Time stamp) const;
-  /// With its yaw rate; there must be one.
+  /// With its speed and yaw rate; there must be one.
   const VehicleState& newest() const { return states_.back(); }
   void clear() { states_.clear(); }
 
  private:
-  double turn_rate_up_to(const VehicleState& state) const;
+  /// The first of the states before the newest that is not older; none: null.
+  const VehicleState* first_since(Time stamp) const;
+  // Of the newest state, by the poses before it; 0 without any.
+  double turn_rate() const;
+  double speed_along() const;
 
   std::deque<VehicleState> states_;  ///< by rising stamp
   Time last_turn_{};                 ///< of the newest yaw rate that was not exactly 0
