@@ -33,14 +33,27 @@ std::string text(const Parts&... parts) {
   return stream.str();
 }
 
+/// Not if it is NaN, either.
+bool is_angle(double heading) {
+  return std::abs(heading) < kMaxHeading;
+}
+
 /// Of unit length, or all zero where it gives no direction.
 void normalize_orientation(Checked<Localization>& checked) {
   Eigen::Quaterniond& q = checked.input.map_from_body;
   const double norm = q.norm();
   if (!std::isfinite(norm) || norm < 1e-6) {
-    checked.remarks.push_back(text("localization: pose.orientation (x, y, z, w) is (", q.x(), ", ", q.y(),
-                                   ", ", q.z(), ", ", q.w(), "): ignored"));
+    const std::string numbers = text("(", q.x(), ", ", q.y(), ", ", q.z(), ", ", q.w(), ")");
     q.coeffs().setZero();
+    if (!is_angle(checked.input.heading)) {
+      checked.refusal =
+          Status{StatusCode::kInvalidLocalization,
+                 text("localization: pose.heading is ", checked.input.heading,
+                      ", and pose.orientation (x, y, z, w) is ", numbers, ": neither gives a direction")};
+    } else {
+      checked.remarks.push_back(
+          text("localization: pose.orientation (x, y, z, w) is ", numbers, ": ignored"));
+    }
     return;
   }
   if (std::abs(norm - 1.0) > kNormTolerance) {
@@ -62,7 +75,7 @@ double yaw_of(const Eigen::Quaterniond& q) {
 void settle_direction(Checked<Localization>& checked) {
   Localization& input = checked.input;
   const bool has_orientation = !input.map_from_body.coeffs().isZero();
-  if (!(std::abs(input.heading) < kMaxHeading)) {
+  if (!is_angle(input.heading)) {
     if (!std::isnan(input.heading)) {
       checked.remarks.push_back(text("localization: pose.heading is ", input.heading, " rad: ignored"));
     }
@@ -97,9 +110,10 @@ void settle_direction(Checked<Localization>& checked) {
 
 void limit_motion(Checked<Localization>& checked) {
   Localization& input = checked.input;
-  if (input.linear_velocity.isZero(0.0)) input.linear_velocity.setConstant(kNaN);  // never filled, or at rest
   const double speed = input.linear_velocity.head<2>().norm();
-  if (!(speed <= kMaxSpeed)) {
+  if (input.linear_velocity.isZero(0.0)) {  // never filled, or at rest
+    input.linear_velocity.setConstant(kNaN);
+  } else if (!(speed <= kMaxSpeed)) {
     checked.remarks.push_back(text("localization: pose.linear_velocity is ", speed, " m/s: ignored"));
     input.linear_velocity.setConstant(kNaN);
   }
