@@ -3,6 +3,7 @@
 
 #include <ros/ros.h>
 #include <tf2_ros/transform_listener.h>
+#include <topic_tools/shape_shifter.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -89,12 +90,14 @@ class Listener {
     seen_.end = ros::Time::now();
     seen_.listened = (ros::WallTime::now() - begin).toSec();
     ask_master();
+    look_at_definitions();
     return seen_;
   }
 
  private:
   static constexpr uint32_t kQueue = 1000;
-  static constexpr double kSettling = 0.2;  // [s] until /clock has come, if there is one
+  static constexpr double kSettling = 0.2;   // [s] until /clock has come, if there is one
+  static constexpr double kProbeTime = 1.0;  // [s] for another look at topics on which nothing came
 
   template <class Message>
   void listen(const std::string& name, doctor::Input<Message>& input) {
@@ -133,14 +136,45 @@ class Listener {
 
   void ask_master() {
     MasterSurvey survey;
-    const auto fill = [&survey](doctor::Topic& topic, const std::string& type) {
-      topic = survey.topic(topic.name, type);
+    fill<NavigationInfo>(survey, seen_.navigation.topic);
+    fill<LocalizationEstimate>(survey, seen_.localization.topic);
+    fill<Chassis>(survey, seen_.chassis.topic);
+    fill<LaneMarkers>(survey, seen_.lane_markers.topic);
+    fill<MapMsg>(survey, seen_.map_topic);
+  }
+
+  template <class Message>
+  static void fill(MasterSurvey& survey, doctor::Topic& topic) {
+    topic = survey.topic(topic.name, ros::message_traits::datatype<Message>());
+    topic.md5sum = ros::message_traits::md5sum<Message>();
+  }
+
+  /// A publisher of another definition sends nothing to a subscriber of ours, but it does to one of any.
+  void look_at_definitions() {
+    subscribers_.clear();
+    const auto look_at = [this](doctor::Topic& topic, bool silent) {
+      if (!silent || topic.publishers.empty()) return;
+      subscribers_.push_back(nh_.subscribe<topic_tools::ShapeShifter>(
+          topic.name, kQueue,
+          boost::function<void(const ros::MessageEvent<const topic_tools::ShapeShifter>&)>(
+              [&topic](const ros::MessageEvent<const topic_tools::ShapeShifter>& event) {
+                for (doctor::Publisher& publisher : topic.publishers) {
+                  if (publisher.node == event.getPublisherName()) {
+                    publisher.md5sum = event.getConstMessage()->getMD5Sum();
+                  }
+                }
+              })));
     };
-    fill(seen_.navigation.topic, "relative_map/NavigationInfo");
-    fill(seen_.localization.topic, "relative_map/LocalizationEstimate");
-    fill(seen_.chassis.topic, "relative_map/Chassis");
-    fill(seen_.lane_markers.topic, "relative_map/LaneMarkers");
-    fill(seen_.map_topic, "relative_map/MapMsg");
+    look_at(seen_.navigation.topic, seen_.navigation.messages.empty());
+    look_at(seen_.localization.topic, seen_.localization.messages.empty());
+    look_at(seen_.chassis.topic, seen_.chassis.messages.empty());
+    look_at(seen_.lane_markers.topic, seen_.lane_markers.messages.empty());
+    look_at(seen_.map_topic, seen_.maps.empty());
+    if (subscribers_.empty()) return;
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kProbeTime);
+    while (ros::ok() && ros::WallTime::now() < end) {
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
+    }
   }
 
   ros::NodeHandle nh_;

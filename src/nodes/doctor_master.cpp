@@ -105,7 +105,7 @@ doctor::Publisher MasterSurvey::publisher(const std::string& name, const std::st
   // The master keeps one type for all publishers of a topic: better than none.
   const std::map<std::string, std::string>& types = node.types.count(topic) > 0 ? node.types : types_;
   const auto type = types.find(topic);
-  return {name, node.uri, type == types.end() ? "" : type->second, node.answers};
+  return {name, node.uri, type == types.end() ? "" : type->second, node.answers, ""};
 }
 
 }  // namespace relative_map

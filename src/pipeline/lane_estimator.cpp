@@ -76,7 +76,7 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
   watch_.max_offset = param.max_offset;
   const bool forgotten = last_paint_ && to_seconds(localized.stamp - *last_paint_) > kForgetTime;
   const bool gap = last_ && to_seconds(localized.stamp - last_->stamp) > kLongestGap;
-  const bool broken = !filter_.state().allFinite() || !filter_.covariance().allFinite();
+  const bool broken = !filter_.sound();
   if (last_ && informed() &&
       (forgotten || gap || broken || has_jumped(*last_, localized) || localized.stamp <= last_->stamp)) {
     start(localized);

@@ -45,7 +45,7 @@ void MarkerLaneEstimator::start(double half_width) {
 }
 
 void MarkerLaneEstimator::move(const VehicleState& to) {
-  const bool broken = !filter_.state().allFinite() || !filter_.covariance().allFinite();
+  const bool broken = !filter_.sound();
   const bool gap = last_ && to_seconds(to.stamp - last_->stamp) > kLongestGap;
   if (last_ && (has_jumped(*last_, to) || to.stamp <= last_->stamp || gap || broken)) reset();
   if (!last_ || !last_paint_) {
@@ -106,6 +106,12 @@ MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples
 
 std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double half_width,
                                                   const NavigationLaneParam& param, Time stamp) {
+  if (!last_paint_ && sides.left && sides.right) {  // nothing tells yet which of the two is where it seems
+    const double width = sides.left->points.front().y() - sides.right->points.front().y();
+    if (!(width > param.min_lane_half_width && width < 4.0 * param.max_lane_half_width)) {
+      return {"both are ignored: no lane is between them"};
+    }
+  }
   if (!last_paint_) start(half_width);
   std::vector<std::string> ignored = correct(sides, stamp);
   if (last_paint_ == stamp) {
@@ -119,8 +125,9 @@ std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double
     }
   }
   const double mean = 0.5 * (filter_.state()[kLeft] + filter_.state()[kRight]);
-  // Begun with an outlier, a lane may seem to be one that there is not; NaN is none either.
-  if (!(mean < kWidthMargin * param.max_lane_half_width && mean > param.min_lane_half_width / kWidthMargin)) {
+  // Begun with an outlier, a lane may seem to be one that there is not.
+  if (!filter_.sound() ||
+      !(mean < kWidthMargin * param.max_lane_half_width && mean > param.min_lane_half_width / kWidthMargin)) {
     reset();
   }
   return ignored;

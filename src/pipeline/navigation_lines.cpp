@@ -4,19 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <sstream>
+
+#include "relative_map/pipeline/closed_line.hpp"
 
 namespace relative_map::core {
 
 namespace {
 
-constexpr double kMinSpacing = 1e-3;    // [m] nearer vertices are one and the same
-constexpr double kFarthest = 1e8;       // [m] no projection of the Earth reaches farther
-constexpr double kMinLapLength = 30.0;  // [m] no vehicle drives a tighter circle
-constexpr double kMaxStitchTurn = 0.5;  // [rad] between the headings of the ends of a lap
-constexpr double kMaxSparseGap = 5.0;   // [m] along a sparsely sampled lap, from its last vertex to its first
-constexpr double kSeamBlendLength = 30.0;  // [m] over which a lap's closing error is spread
+constexpr double kMinSpacing = 1e-3;      // [m] nearer vertices are one and the same
+constexpr double kFarthest = 1e8;         // [m] no projection of the Earth reaches farther
+constexpr std::size_t kManyLines = 1000;  // that nobody means to send
 
 /// Positions relative to the first point, with duplicates left out; a sentence if there are too few.
 std::string clean_positions(const RecordedLine& recorded, NavigationLine& line,
@@ -26,7 +24,7 @@ std::string clean_positions(const RecordedLine& recorded, NavigationLine& line,
     for (const auto& [field, value] : {std::pair("x", point.x), std::pair("y", point.y)}) {
       if (std::abs(value) < kFarthest) continue;  // not if it is NaN
       std::ostringstream fault;
-      fault << field << " of point " << i << " is " << value << (std::isfinite(value) ? " m" : "");
+      fault << "path_point[" << i << "]." << field << " is " << value << (std::isfinite(value) ? " m" : "");
       return fault.str();
     }
   }
@@ -40,93 +38,6 @@ std::string clean_positions(const RecordedLine& recorded, NavigationLine& line,
     kept.push_back(i);
   }
   return kept.size() < 2 ? "it has fewer than two distinct points" : "";
-}
-
-Polyline positions(const PathPoints& points, std::size_t begin, std::size_t end) {
-  Polyline result;
-  for (std::size_t i = begin; i < end; ++i) result.push_back(points[i].position);
-  return result;
-}
-
-/// Whether all points from `begin` on lie on the line before them, and lead the same way.
-bool repeats_itself(const PathPoints& points, std::size_t begin, double half_width) {
-  const Polyline lap = positions(points, 0, begin);
-  PolylineWalker walker(lap);
-  return std::all_of(
-      points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(), [&](const PathPoint& point) {
-        const Foot foot = walker.next(point.position);
-        const Point2 along = lap[foot.segment + 1] - lap[foot.segment];
-        return foot.squared_distance <= half_width * half_width && along.dot(point.direction) > 0.0;
-      });
-}
-
-/// How many points a line has up to where it reaches its start again, to repeat itself from there on.
-/// All of them if it does not, or if it goes elsewhere from there.
-std::size_t points_of_lap(const PathPoints& points, double half_width) {
-  const PathPoint& first = points.front();
-  bool next_is_past_start = false;
-  for (std::size_t end = points.size(); points[end - 1].s > kMinLapLength; --end) {
-    const PathPoint& point = points[end - 1];
-    const Point2 offset = point.position - first.position;
-    const bool beside_start = std::abs(cross(first.direction, offset)) <= half_width &&
-                              std::abs(angle_difference(point.theta, first.theta)) <= kMaxStitchTurn;
-    const bool past_start = first.direction.dot(offset) >= 0.0;
-    if (next_is_past_start && beside_start && !past_start) {
-      return repeats_itself(points, end, half_width) ? end : points.size();
-    }
-    next_is_past_start = beside_start && past_start;
-  }
-  return points.size();
-}
-
-/// Drops what comes too near to the start, so that the stitch goes forward.
-void trim_overlap(PathPoints& points, double spacing) {
-  const PathPoint first = points.front();
-  while (points.size() > 3 &&
-         (first.position - points.back().position).dot(first.direction) < 0.3 * spacing) {
-    points.pop_back();
-  }
-}
-
-/// Spreads the sideways error at the seam over the end of the lap.
-void blend_seam(PathPoints& points, double length) {
-  const Point2 stitch = points.front().position - points.back().position;
-  const Point2 along = (points.front().direction + points.back().direction).normalized();
-  const double error = cross(along, stitch);
-  if (std::abs(error) < 0.01) return;
-  const double blend = std::min(kSeamBlendLength, length / 4.0);
-  for (PathPoint& point : points) {
-    const double u = 1.0 - (points.back().s - point.s) / blend;
-    if (u > 0.0) {
-      const double smooth = u * u * u * (10.0 + u * (6.0 * u - 15.0));
-      point.position += error * smooth * left_of(point.direction);
-    }
-  }
-}
-
-/// Makes a lap of a line whose ends meet, side by side and in heading; false leaves it as it is.
-bool stitch(NavigationLine& line, double half_width) {
-  PathPoints& points = line.points;
-  if (points.size() < 4 || line.length < kMinLapLength) return false;
-  const double spacing = line.length / static_cast<double>(points.size() - 1);
-  const std::size_t end = points_of_lap(points, half_width);
-  const PathPoint &first = points.front(), &last = points[end - 1];
-  const double turn = angle_difference(last.theta, first.theta);
-  const Point2 along = (first.direction + last.direction).normalized();
-  const Point2 gap = first.position - last.position;
-  const double gap_ahead = std::max(half_width, std::min(1.5 * spacing, kMaxSparseGap));
-  const bool ends_meet = std::abs(cross(along, gap)) <= half_width && gap.dot(along) <= gap_ahead &&
-                         gap.dot(along) >= -half_width;
-  if (!ends_meet || std::abs(turn) > kMaxStitchTurn) return false;
-
-  points.resize(end);
-  trim_overlap(points, spacing);
-  blend_seam(points, points.back().s);
-  compute_arc_length(points);
-  line.ends = Ends::kClosed;
-  line.length = points.back().s + (points.front().position - points.back().position).norm();
-  compute_geometry(points, Ends::kClosed, line.length);
-  return true;
 }
 
 /// Whether the recorded headings are those of the positions.
@@ -252,6 +163,22 @@ std::vector<std::string> make_ids(const std::vector<RecordedLine>& lines) {
   return ids;
 }
 
+/// The first of the line's own numbers that is infinite, which is not what "not given" looks like.
+std::string infinite_number(const RecordedLine& recorded) {
+  for (std::size_t i = 0; i < recorded.points.size(); ++i) {
+    const LinePoint& point = recorded.points[i];
+    for (const auto& [field, value] : {std::pair("theta", point.theta), std::pair("kappa", point.kappa),
+                                       std::pair("dkappa", point.dkappa), std::pair("s", point.s)}) {
+      if (!std::isinf(value)) continue;
+      std::ostringstream fault;
+      fault << "path_point[" << i << "]." << field << " is " << value
+            << ": computed from the positions, as all along the line";
+      return fault.str();
+    }
+  }
+  return "";
+}
+
 /// Two lines of one priority would leave open which one yields: the later one moves back.
 void make_priorities_unique(NavigationLines& result) {
   std::vector<NavigationLine*> order;
@@ -263,12 +190,21 @@ void make_priorities_unique(NavigationLines& result) {
   std::stable_sort(order.begin(), order.end(), [](const NavigationLine* a, const NavigationLine* b) {
     return a->priority < b->priority;
   });
+  std::string fault;
+  std::size_t moved = 0;
   for (std::size_t i = 1; i < order.size(); ++i) {
     if (order[i]->priority > order[i - 1]->priority) continue;
+    const std::string given = std::to_string(order[i]->priority);
     order[i]->priority = order[i - 1]->priority + 1;
-    result.faults.push_back("line '" + order[i]->id +
-                            "' shares its priority with another: it now has priority " +
-                            std::to_string(order[i]->priority));
+    if (moved++ > 0) continue;
+    fault = "path_priority of line '" + order[i]->id + "' is " + given +
+            ", which is taken: it now has priority " + std::to_string(order[i]->priority);
+  }
+  if (moved > 1) fault += ", and " + std::to_string(moved - 1) + " more lines move back as well";
+  if (moved > 0) result.faults.push_back(fault);
+  if (!order.empty() && order.front()->priority > 0) {
+    result.faults.push_back("path_priority of the best line, '" + order.front()->id + "', is " +
+                            std::to_string(order.front()->priority) + ", not 0: it counts as 0");
   }
 }
 
@@ -289,9 +225,17 @@ std::shared_ptr<const NavigationLines> prepare_navigation_lines(const Navigation
       continue;
     }
     if (!line.kinks.empty()) result->faults.push_back(kink_sentence(line));
+    if (const std::string fault = infinite_number(info.lines[i]); !fault.empty()) {
+      result->faults.push_back("line '" + line.id + "': " + fault);
+    }
     result->lines.push_back(std::move(line));
   }
   make_priorities_unique(*result);
+  if (info.lines.size() > kManyLines) {
+    result->faults.push_back(
+        "navigation_path has " + std::to_string(info.lines.size()) +
+        " lines: each tick looks at all of them, and a map has the best of those in reach");
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "relative_map/pipeline/narrow_lanes.hpp"
 
@@ -10,7 +11,8 @@ namespace relative_map::core {
 namespace {
 
 constexpr Time kLate =
-    std::chrono::milliseconds(500);  // an older message than the newest, but of the same time
+    std::chrono::milliseconds(500);     // an older message than the newest, but of the same time
+constexpr std::size_t kMostNoted = 20;  // remarks between two ticks
 
 }  // namespace
 
@@ -21,12 +23,18 @@ bool RelativeMapPipeline::set_localization(const Localization& link,
     reset();
   }
   localization_ = check_localization(link);
-  if (localization_->refusal) return true;
+  note(localization_->remarks);
+  if (localization_->refusal) {
+    note({localization_->refusal->message});
+    return true;
+  }
   if (link_from_base) localization_->input = carry_to_base(localization_->input, *link_from_base);
   const auto state = make_vehicle_state(localization_->input, fresh_chassis(link.stamp));
-  const auto* vehicle = std::get_if<VehicleState>(&state);
-  if (!vehicle) return true;
-  poses_.add(*vehicle);
+  if (const auto* status = std::get_if<Status>(&state)) {
+    note({status->message});
+    return true;
+  }
+  poses_.add(std::get<VehicleState>(state));
   images_.move(poses_.newest());
   estimator_.move(poses_.newest(), config_->lane_fusion);
   marker_estimator_.move(poses_.newest());
@@ -36,8 +44,14 @@ bool RelativeMapPipeline::set_localization(const Localization& link,
 void RelativeMapPipeline::set_lane_markers(const LaneMarkers& markers) {
   Checked<LaneMarkers> checked = check_lane_markers(markers);
   marker_remarks_ = std::move(checked.remarks);
+  note(marker_remarks_);
   markers_ = std::move(checked.input);
   images_.add(*markers_);
+}
+
+void RelativeMapPipeline::set_chassis(const Chassis& chassis) {
+  chassis_ = check_chassis(chassis);
+  note(chassis_->remarks);
 }
 
 std::optional<Chassis> RelativeMapPipeline::fresh_chassis(Time now) const {
@@ -52,6 +66,7 @@ void RelativeMapPipeline::reset() {
   chassis_.reset();
   markers_.reset();
   marker_remarks_.clear();
+  noted_.clear();
   poses_.clear();
   images_.clear();
   estimator_.reset();
@@ -66,7 +81,7 @@ std::optional<Time> RelativeMapPipeline::pose_stamp() const {
 }
 
 RelativeMap RelativeMapPipeline::tick(Time now) {
-  remarks_.clear();
+  remarks_ = std::exchange(noted_, {});
   std::variant<RelativeMap, Status> built = build(now);
   if (auto* status = std::get_if<Status>(&built)) {
     // Without a pose that holds, the statement is about now.
@@ -145,16 +160,32 @@ std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) 
   }
   if (localization_->refusal) return *localization_->refusal;
   add_remarks(localization_->remarks);
-  if (chassis_) add_remarks(chassis_->remarks);
-  add_remarks(marker_remarks_);
-  auto state = make_vehicle_state(localization_->input, fresh_chassis(now));
+  const std::optional<Chassis> chassis = fresh_chassis(now);
+  if (chassis) {
+    add_remarks(chassis_->remarks);
+    if (auto disagreement = speeds_disagree(localization_->input, *chassis))
+      add_remarks({std::move(*disagreement)});
+  }
+  const bool markers_are_fresh =
+      markers_ && to_seconds(now - markers_->stamp) <= config_->max_age.lane_markers;
+  if (markers_are_fresh) add_remarks(marker_remarks_);
+  auto state = make_vehicle_state(localization_->input, chassis);
   auto* vehicle = std::get_if<VehicleState>(&state);
   if (vehicle && !std::isfinite(vehicle->speed)) vehicle->speed = poses_.newest().speed;
   return state;
 }
 
 void RelativeMapPipeline::add_remarks(const std::vector<std::string>& remarks) {
-  remarks_.insert(remarks_.end(), remarks.begin(), remarks.end());
+  for (const std::string& remark : remarks) {
+    if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) remarks_.push_back(remark);
+  }
+}
+
+void RelativeMapPipeline::note(const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks) {
+    const bool known = std::find(noted_.begin(), noted_.end(), remark) != noted_.end();
+    if (!known && noted_.size() < kMostNoted) noted_.push_back(remark);
+  }
 }
 
 /// The current lane has moved: others may lie too near to where it is now, which is where the paint says.

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kJump = 5.0;                                   // [m] that no speed has to explain
 constexpr double kFastest = 60.0;                               // [m/s] of a vehicle whose speed is not known
+constexpr double kSpeedTolerance = 3.0;                         // [m/s] between chassis and localization ...
+constexpr double kSpeedShare = 0.1;                             // ... and of the speed, besides
 constexpr Time kKept = std::chrono::seconds(3);                 // of poses
 constexpr Time kTurnInterval = std::chrono::milliseconds(200);  // over which a turn is measured
 constexpr Time kSpeedInterval = std::chrono::milliseconds(500);     // over which a speed is measured
@@ -86,6 +88,18 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
   state.speed = chassis && std::isfinite(chassis->speed) ? chassis->speed : along;
   state.yaw_rate = base.angular_velocity_body.z();
   return state;
+}
+
+std::optional<std::string> speeds_disagree(const Localization& base, const Chassis& chassis) {
+  const double along = base.linear_velocity.head<2>().dot(Pose2(Point2::Zero(), heading_of(base)).forward());
+  const double difference = std::abs(chassis.speed - along);
+  if (!(difference > kSpeedTolerance + kSpeedShare * std::abs(along))) return std::nullopt;
+  std::ostringstream sentence;
+  sentence.precision(3);
+  sentence << "chassis: speed_mps is " << chassis.speed
+           << " m/s by its gear, but localization: pose.linear_velocity is " << along
+           << " m/s along the heading: the chassis is believed";
+  return sentence.str();
 }
 
 bool has_jumped(const VehicleState& before, const VehicleState& after) {

@@ -10,6 +10,11 @@ using diagnostic_msgs::DiagnosticStatus;
 
 constexpr double kMaxClockStands = 2.0;  // [s] a clock that is simulated slowly moves more often
 
+/// One bad frame is no alarm, and two are none yet.
+bool comes_and_goes(const MapStatistics& statistics) {
+  return statistics.drop_outs >= 3 || (statistics.drop_outs == 2 && statistics.empty_share >= 0.1);
+}
+
 unsigned char level_of(core::StatusCode code) {
   // Nothing received yet and the end of a line are states that every drive passes through.
   switch (code) {
@@ -87,6 +92,11 @@ void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticSt
                     statistics.clock_stands);
   } else if (statistics.maps == 0) {
     status.summary(DiagnosticStatus::WARN, "no map published yet");
+  } else if (map.status.code == core::StatusCode::kOk && comes_and_goes(statistics)) {
+    const core::Status& fault = statistics.last_fault;
+    status.summary(DiagnosticStatus::WARN, "the map comes and goes: " + std::to_string(statistics.drop_outs) +
+                                               " drop-outs in 10 s, the last one for " +
+                                               status_name(fault.code) + ": " + fault.message);
   } else if (map.status.code == core::StatusCode::kOk) {
     status.summary(DiagnosticStatus::OK,
                    std::to_string(statistics.lanes) + " lanes from " + source_name(map.fusion.source));
@@ -104,7 +114,11 @@ void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticSt
   add(status, "fused heading offset [rad]", map.fusion.heading_offset);
   add(status, "left half width [m]", map.fusion.left_half_width);
   add(status, "right half width [m]", map.fusion.right_half_width);
-  status.add("remarks", map.status.code == core::StatusCode::kOk ? map.status.message : "");
+  status.add("remarks", statistics.remarks);
+  status.add("navigation lines", statistics.lines);
+  std::string faults;
+  for (const std::string& fault : statistics.line_faults) faults += (faults.empty() ? "" : "; ") + fault;
+  status.add("navigation faults", faults);
   status.add("marker range [m]", map.fusion.marker_range);
   status.add("marker age [s]", map.fusion.marker_age);
   for (const auto& [topic, input] : statistics.inputs) {
@@ -113,6 +127,8 @@ void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticSt
   }
   status.add("tick time [ms]", 1e3 * statistics.tick_time);
   status.add("maps", statistics.maps);
+  status.add("drop-outs in 10 s", statistics.drop_outs);
+  status.addf("empty maps in 10 s [%]", "%.0f", 100.0 * statistics.empty_share);
   for (const auto& [reason, count] : statistics.empty_maps) status.add("empty maps, " + reason, count);
 }
 

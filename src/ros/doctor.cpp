@@ -20,6 +20,7 @@ constexpr Rule kRules[] = {
     {"topics_have_publishers", topics_have_publishers},
     {"publishers_answer", publishers_answer},
     {"types_are_right", types_are_right},
+    {"definitions_are_the_same", definitions_are_the_same},
     {"topics_have_one_publisher", topics_have_one_publisher},
     {"map_node_listens", map_node_listens},
     {"messages_arrive", messages_arrive},

@@ -82,6 +82,7 @@ Findings clock_runs(const Evidence& evidence);
 Findings topics_have_publishers(const Evidence& evidence);
 Findings publishers_answer(const Evidence& evidence);
 Findings types_are_right(const Evidence& evidence);
+Findings definitions_are_the_same(const Evidence& evidence);
 Findings topics_have_one_publisher(const Evidence& evidence);
 Findings map_node_listens(const Evidence& evidence);
 Findings messages_arrive(const Evidence& evidence);

@@ -56,6 +56,11 @@ bool has_type(const Publisher& publisher, const Topic& topic) {
   return publisher.type.empty() || publisher.type == "*" || publisher.type == topic.type;
 }
 
+/// Of the same name, but not of the same fields.
+bool has_other_definition(const Publisher& publisher, const Topic& topic) {
+  return has_type(publisher, topic) && !publisher.md5sum.empty() && publisher.md5sum != topic.md5sum;
+}
+
 Finding map_node_missing(const Topic& topic) {
   return wrong(
       "nobody publishes " + topic.name + ": the map node does not run",
@@ -114,6 +119,23 @@ Findings types_are_right(const Evidence& evidence) {
   return findings;
 }
 
+Findings definitions_are_the_same(const Evidence& evidence) {
+  Findings findings;
+  for (const Topic* topic : all_topics(evidence.seen)) {
+    for (const Publisher& publisher : topic->publishers) {
+      if (!has_other_definition(publisher, *topic)) continue;
+      findings.push_back(wrong(
+          publisher.node + " publishes " + topic->name + " with another definition of " + topic->type +
+              " (md5sum " + publisher.md5sum + ", here " + topic->md5sum +
+              "), so that none of its messages arrives",
+          "build " + publisher.node +
+              " and this package from the same messages, and start it again (rosmsg md5 " + topic->type +
+              " tells what each side has); a bag that was recorded before: rosbag migrate"));
+    }
+  }
+  return findings;
+}
+
 Findings topics_have_one_publisher(const Evidence& evidence) {
   Findings findings;
   for (const Topic* topic : all_topics(evidence.seen)) {
@@ -148,15 +170,14 @@ Findings map_node_listens(const Evidence& evidence) {
 Findings messages_arrive(const Evidence& evidence) {
   Findings findings;
   const auto look = [&](const Topic& topic, std::size_t received, const std::string& mend) {
-    const bool could = std::any_of(
-        topic.publishers.begin(), topic.publishers.end(),
-        [&](const Publisher& publisher) { return publisher.answers && has_type(publisher, topic); });
+    const bool could =
+        std::any_of(topic.publishers.begin(), topic.publishers.end(), [&](const Publisher& publisher) {
+          return publisher.answers && has_type(publisher, topic) && !has_other_definition(publisher, topic);
+        });
     if (!could || received > 0) return;
     findings.push_back(wrong(list(nodes_of(topic)) + " is to publish " + topic.name + ", but in " +
                                  fixed(evidence.seen.listened, 1) + " s no message came",
-                             mend + "; if rostopic hz " + topic.name +
-                                 " shows some, they were built with another definition of " + topic.type +
-                                 ": build both sides from the same messages"));
+                             mend));
   };
   for (const Role& role : roles(evidence.seen)) {
     look(role.topic, role.received,

@@ -10,6 +10,9 @@ namespace {
 
 const ros::WallDuration kRateWindow(5.0);
 const ros::WallDuration kSettleTime(0.5);  // that another status must last
+const ros::WallDuration kDropOutWindow(10.0);
+constexpr std::size_t kMaxLineFaults = 5;  // that are shown
+const ros::WallDuration kRemarkTime(2.0);  // that a remark is shown, at once a second
 
 }  // namespace
 
@@ -41,7 +44,15 @@ void MapObserver::note_map(const core::RelativeMap& map, double tick_time, const
   statistics_.last_map.fusion = map.fusion;
   statistics_.last_map.current_lane_id = map.current_lane_id;
   statistics_.lanes = map.lanes.size();
-  if (map.lanes.empty()) ++statistics_.empty_maps[status_name(map.status.code)];
+  recent_.push_back({now, !map.lanes.empty()});
+  while (recent_.front().at < now - kDropOutWindow) recent_.pop_front();
+  if (map.lanes.empty()) {
+    ++statistics_.empty_maps[status_name(map.status.code)];
+    statistics_.last_fault = map.status;
+  } else if (!map.status.message.empty()) {
+    statistics_.remarks = map.status.message;
+    remarked_ = now;
+  }
   const auto current = std::find_if(map.lanes.begin(), map.lanes.end(),
                                     [&](const core::Lane& lane) { return lane.id == map.current_lane_id; });
   if (current == map.lanes.end()) return;
@@ -54,15 +65,36 @@ void MapObserver::note_map(const core::RelativeMap& map, double tick_time, const
   statistics_.remaining_distance = current->remaining_distance;
 }
 
+void MapObserver::note_lines(const core::NavigationLines& lines) {
+  statistics_.lines = lines.lines.size();
+  statistics_.line_faults = lines.faults;
+  if (lines.faults.size() > kMaxLineFaults) statistics_.line_faults.resize(kMaxLineFaults);
+}
+
 void MapObserver::note_clock(const ros::Time& now, const ros::WallTime& wall_now) {
   if (clock_since_ && now == clock_) return;
   clock_ = now;
   clock_since_ = wall_now;
 }
 
+void MapObserver::count_drop_outs(const ros::WallTime& wall_now, MapStatistics& result) const {
+  std::size_t seen = 0, empty = 0;
+  bool filled = false;
+  for (const Look& look : recent_) {
+    if (look.at < wall_now - kDropOutWindow) continue;
+    ++seen;
+    if (!look.filled) ++empty;
+    if (filled && !look.filled) ++result.drop_outs;
+    filled = look.filled;
+  }
+  if (seen > 0) result.empty_share = static_cast<double>(empty) / static_cast<double>(seen);
+}
+
 MapStatistics MapObserver::statistics(const ros::Time& now, const ros::WallTime& wall_now) const {
   MapStatistics result = statistics_;
   if (clock_since_ && now == clock_) result.clock_stands = (wall_now - *clock_since_).toSec();
+  count_drop_outs(wall_now, result);
+  if (wall_now - remarked_ > kRemarkTime) result.remarks.clear();
   for (const auto& [topic, input] : inputs_) {
     const auto recent =
         std::count_if(input.arrivals.begin(), input.arrivals.end(),

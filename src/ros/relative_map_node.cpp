@@ -2,6 +2,8 @@
 
 #include <XmlRpcValue.h>
 
+#include <sstream>
+
 #include "relative_map/ros/line_loader.hpp"
 
 namespace relative_map {
@@ -45,15 +47,28 @@ core::PipelineConfig with_request(core::PipelineConfig config, RelativeMapConfig
   return config;
 }
 
-void log_intake(const core::NavigationLines& lines) {
-  const std::size_t faults = std::min(lines.faults.size(), kMaxLogged);
-  for (std::size_t i = 0; i < faults; ++i) ROS_WARN_STREAM("navigation: " << lines.faults[i]);
+std::string description(const core::NavigationLine& line) {
+  std::ostringstream text;
+  text << "line '" << line.id << "', priority " << line.priority << ", " << line.points.size() << " points, "
+       << line.length << " m" << (line.closed() ? ", closed" : "");
+  return text.str();
+}
+
+/// Each message is told of once, however often it is sent.
+void log_intake(const core::NavigationLines& lines, ThrottledLog& log) {
+  std::vector<std::string> good;
   for (std::size_t i = 0; i < std::min(lines.lines.size(), kMaxLogged); ++i) {
-    const core::NavigationLine& line = lines.lines[i];
-    ROS_INFO_STREAM("navigation: line '" << line.id << "', priority " << line.priority << ", "
-                                         << line.points.size() << " points, " << line.length << " m"
-                                         << (line.closed() ? ", closed" : ""));
+    good.push_back(description(lines.lines[i]));
   }
+  const auto end_of_faults =
+      lines.faults.begin() + static_cast<std::ptrdiff_t>(std::min(lines.faults.size(), kMaxLogged));
+  const std::vector<std::string> faults(lines.faults.begin(), end_of_faults);
+  std::string all;
+  for (const std::string& sentence : faults) all += sentence + "\n";
+  for (const std::string& sentence : good) all += sentence + "\n";
+  if (!log.due(all, ros::WallTime::now())) return;
+  for (const std::string& fault : faults) ROS_WARN_STREAM("navigation: " << fault);
+  for (const std::string& line : good) ROS_INFO_STREAM("navigation: " << line);
   ROS_INFO_STREAM("navigation: " << lines.lines.size() << " lines, " << lines.faults.size() << " faults");
 }
 
@@ -149,7 +164,7 @@ std::shared_ptr<const core::NavigationLines> RelativeMapNode::prepare(const Navi
     config = intake_config_;
   }
   auto lines = MapEngine::prepare(message, config);
-  log_intake(*lines);
+  log_intake(*lines, intake_log_);
   return lines;
 }
 
@@ -211,7 +226,9 @@ void RelativeMapNode::pick_up_lines() {
     const std::lock_guard<std::mutex> lock(intake_mutex_);
     lines.swap(new_lines_);
   }
-  if (lines) engine_.set_navigation_lines(std::move(lines));
+  if (!lines) return;
+  observer_.note_lines(*lines);
+  engine_.set_navigation_lines(std::move(lines));
 }
 
 void RelativeMapNode::on_timer(const ros::TimerEvent&) {

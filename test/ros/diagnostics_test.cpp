@@ -70,6 +70,71 @@ TEST(Diagnostics, NameTheReason) {
             "OFF_ROUTE: far away");
 }
 
+/// Maps of `pattern`, one each tenth of a second: '+' is filled, anything else is empty.
+MapStatistics after_maps(const std::string& pattern, double wait = 0.0) {
+  MapObserver observer;
+  ros::WallTime now(1000.0);
+  for (const char map_is : pattern) {
+    core::RelativeMap map;
+    if (map_is == '+') {
+      map.lanes.emplace_back().id = "lane";
+    } else {
+      map.status = {core::StatusCode::kOffRoute, "far away"};
+    }
+    now += ros::WallDuration(0.1);
+    observer.note_map(map, 0.001, now);
+  }
+  return observer.statistics(ros::Time(50.0), now + ros::WallDuration(wait));
+}
+
+TEST(Diagnostics, WarnOfAMapThatComesAndGoes) {
+  for (const char* pattern :
+       {"+-+-+-+-", "-+-+-+-+", "+++---+++---+++---+++", "+-++++++++++++++-+++++++++++++-+++++",
+        "++++++---+++++++++++++++---++++++++"}) {
+    const auto status = summary_of(after_maps(pattern));
+    EXPECT_NE(status.level, DiagnosticStatus::OK) << pattern;
+    EXPECT_THAT(status.message, HasSubstr("OFF_ROUTE: far away")) << pattern;
+  }
+  EXPECT_THAT(summary_of(after_maps("+-+-+-+")).message,
+              HasSubstr("the map comes and goes: 3 drop-outs in 10 s, the last one for OFF_ROUTE"));
+  EXPECT_EQ(value_of(summary_of(after_maps("+-+-+-+--+")), "empty maps in 10 s [%]"), "50");
+}
+
+TEST(Diagnostics, AreOkWhereTheMapWasGoneForAFrameOrTwo) {
+  for (const char* pattern : {"++++-+++++", "----------++++++++", "+++++++++++++-++++++++++++++-+++++++++++++"}) {
+    EXPECT_EQ(summary_of(after_maps(pattern)).level, DiagnosticStatus::OK) << pattern;
+  }
+  EXPECT_EQ(summary_of(after_maps("+-+-+-+", 10.5)).level, DiagnosticStatus::OK) << "long ago";
+}
+
+TEST(Diagnostics, TellWhatWasWrongWithTheLines) {
+  core::NavigationLines lines;
+  lines.lines.resize(2);
+  lines.faults = {"line 'a' is left out", "line 'b' turns back", "3", "4", "5", "6"};
+  MapObserver observer;
+  observer.note_lines(lines);
+  const auto status = summary_of(observer.statistics(ros::Time(50.0), ros::WallTime(1000.0)));
+  EXPECT_EQ(value_of(status, "navigation lines"), "2");
+  EXPECT_EQ(value_of(status, "navigation faults"), "line 'a' is left out; line 'b' turns back; 3; 4; 5");
+}
+
+TEST(Diagnostics, ShowRemarksForAWhile) {
+  MapObserver observer;
+  core::RelativeMap map;
+  map.lanes.emplace_back().id = "lane";
+  map.status.message = "chassis: speed_mps is 1000: ignored";
+  const ros::WallTime start(1000.0);
+  observer.note_map(map, 0.001, start);
+  map.status.message.clear();
+  observer.note_map(map, 0.001, start + ros::WallDuration(0.1));
+  const auto remarks = [&](double seconds) {
+    return value_of(summary_of(observer.statistics(ros::Time(50.0), start + ros::WallDuration(seconds))),
+                    "remarks");
+  };
+  EXPECT_EQ(remarks(1.0), "chassis: speed_mps is 1000: ignored");
+  EXPECT_EQ(remarks(3.0), "");
+}
+
 TEST(Diagnostics, WarnOfAClockThatStandsStill) {
   core::RelativeMap map;
   map.lanes.emplace_back().id = "lane";

@@ -56,7 +56,7 @@ Topic topic(const std::string& name, const std::string& type, const std::string&
   Topic result;
   result.name = name;
   result.type = "relative_map/" + type;
-  result.publishers = {{publisher, "http://127.0.0.1:4000/", result.type, true}};
+  result.publishers = {{publisher, "http://127.0.0.1:4000/", result.type, true, ""}};
   result.subscribers = {"/relative_map_manager"};
   return result;
 }

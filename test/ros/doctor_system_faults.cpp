@@ -92,6 +92,16 @@ std::vector<Fault> topic_faults() {
        "/can publishes /chassis as std_msgs/Float64, not as relative_map/Chassis",
        "convert it to relative_map/Chassis",
        {}},
+      {"definitions_are_the_same",
+       "OtherDefinition",
+       [](Observations& seen) {
+         seen.chassis.topic.md5sum = "0123";
+         seen.chassis.topic.publishers[0].md5sum = "4567";
+         seen.chassis.messages.clear();
+       },
+       "/can publishes /chassis with another definition of relative_map/Chassis (md5sum 4567, here 0123)",
+       "from the same messages",
+       {}},
       {"topics_have_one_publisher",
        "TwoPublishers",
        [](Observations& seen) {
@@ -110,7 +120,10 @@ std::vector<Fault> topic_faults() {
        {}},
       {"messages_arrive",
        "NavigationNotLatched",
-       [](Observations& seen) { seen.navigation.messages.clear(); },
+       [](Observations& seen) {
+         seen.navigation.messages.clear();
+         seen.navigation.topic.md5sum = seen.navigation.topic.publishers[0].md5sum = "0123";
+       },
        "/recorder is to publish /navigation, but in 5.0 s no message came",
        "publish it latched",
        {}},

@@ -89,6 +89,23 @@ class DoctorTest(unittest.TestCase):
             other.unregister()
             self.vehicle.chassis.start()
 
+    def test_another_definition(self):
+        class Chassis(Float64):
+            _type = 'relative_map/Chassis'
+            _md5sum = '0123456789abcdef0123456789abcdef'
+
+        self.vehicle.chassis.stop()
+        other = rospy.Publisher('chassis', Chassis, queue_size=1)
+        timer = rospy.Timer(rospy.Duration(0.05), lambda _: other.publish(Chassis(10.0)))
+        try:
+            self.assert_finds('publishes /chassis with another definition of relative_map/Chassis '
+                              '(md5sum 0123456789abcdef0123456789abcdef, here ')
+        finally:
+            timer.shutdown()
+            timer.join()
+            other.unregister()
+            self.vehicle.chassis.start()
+
     def test_two_publishers(self):
         with subprocess.Popen(['rostopic', 'pub', '-s', '-r', '1', '/chassis', 'relative_map/Chassis', '{}'],
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:

@@ -5,7 +5,7 @@ import time
 
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from relative_map.msg import FusionState, LaneMarkers, MapStatus, NavigationInfo
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
@@ -183,6 +183,40 @@ class Inputs(NodeTest):
         diagnostics = Latest('/diagnostics', DiagnosticArray)
         self.addCleanup(diagnostics.subscriber.unregister)
         wait_for(lambda: diagnostics.message, 'diagnostics after the clock went back')
+
+    def test_a_clock_that_stands_still(self):
+        clock = rospy.Publisher('/clock', Clock, queue_size=1)
+        self.addCleanup(clock.unregister)
+        said = []  # level and sentence, each second
+        diagnostics = rospy.Subscriber('/diagnostics', DiagnosticArray, lambda array: said.extend(
+            (status.level, status.message) for status in array.status if status.name.endswith('relative map')))
+        self.addCleanup(diagnostics.unregister)
+        rospy.set_param('/use_sim_time', True)
+        self.start()
+
+        def expect_warnings(what):
+            first = len(said)
+            wait_for(lambda: len(said) >= first + 5, 'diagnostics ' + what)
+            for level, sentence in said[first + 3:]:
+                self.assertEqual(level, DiagnosticStatus.WARN, what)
+                self.assertIn('the clock stands still', sentence, what)
+
+        expect_warnings('before the clock has ever come')
+        self.vehicle.navigation.publish(messages.three_lines())
+        wait_for(clock.get_num_connections, 'subscriber of the clock')
+        now = 1000.0
+
+        def runs():
+            nonlocal now
+            now += 0.02
+            self.vehicle.sense(rospy.Time(now))
+            clock.publish(Clock(rospy.Time(now)))
+            time.sleep(0.005)
+            return said and said[-1][0] == DiagnosticStatus.OK
+
+        wait_for(runs, 'diagnostics that all is well while the clock runs')
+        expect_warnings('after the clock has stopped')
+        wait_for(runs, 'diagnostics that all is well while the clock runs again')
 
 
 if __name__ == '__main__':

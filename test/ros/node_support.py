@@ -170,6 +170,8 @@ class Vehicle:
         self.rate = rate
         self.sends_localization = self.sends_chassis = self.sends_markers = True
         self.alter = lambda localization: localization
+        self.alter_chassis = lambda chassis: chassis
+        self.alter_markers = lambda markers: markers
         self.marker_offset = 0.0  # [m] of the lane's middle from the car, left positive
         self.stamps = []  # of all localizations that were sent
         self.navigation = rospy.Publisher(names('navigation'), NavigationInfo, queue_size=1, latch=True)
@@ -200,9 +202,9 @@ class Vehicle:
             self.stamps.append(stamp)
             self._localization.publish(self.alter(vehicle_messages.localization(stamp, self._x)))
         if self.sends_chassis:
-            self._chassis.publish(vehicle_messages.chassis(stamp))
+            self._chassis.publish(self.alter_chassis(vehicle_messages.chassis(stamp)))
         if self.sends_markers and with_markers:
-            self._markers.publish(vehicle_messages.lane_markers(stamp, self.marker_offset))
+            self._markers.publish(self.alter_markers(vehicle_messages.lane_markers(stamp, self.marker_offset)))
 
     def _drive(self):
         start, count = time.monotonic(), 0

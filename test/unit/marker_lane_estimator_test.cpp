@@ -115,5 +115,16 @@ TEST(MarkerLane, AnOutlierIsLeftOut) {
   }
 }
 
+TEST(MarkerLane, DoesNotStartFromPaintWithNoLaneBetween) {
+  for (const double half_width : {0.0, 0.5, 4.5}) {
+    Scene scene({}, markers_alone());
+    scene.see(lane_about({0.2}, half_width));
+    EXPECT_EQ(scene.at(Pose2()).status.code, StatusCode::kMarkersUnusable) << half_width;
+    EXPECT_TRUE(scene.remarked("both are ignored: no lane is between them"));
+    scene.see(lane_about({0.2}));
+    EXPECT_EQ(scene.at(Pose2(Point2(1.0, 0.0), 0.0)).status.code, StatusCode::kOk);
+  }
+}
+
 }  // namespace
 }  // namespace relative_map::core

@@ -47,14 +47,15 @@ TEST(NavigationLines, WithCoordinatesThatAreNotFiniteAreLeftOutWithThePoint) {
   for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
     RecordedLine line = recording(straight(Pose2(), 50.0, 1.0));
     line.points[7].y = bad;
-    EXPECT_THAT(fault_of(line), HasSubstr(std::isnan(bad) ? "y of point 7 is nan" : "y of point 7 is inf"));
+    EXPECT_THAT(fault_of(line),
+                HasSubstr(std::isnan(bad) ? "path_point[7].y is nan" : "path_point[7].y is inf"));
   }
 }
 
 TEST(NavigationLines, WithCoordinatesThatAreNotOnEarthAreLeftOut) {
   RecordedLine line = recording(straight(Pose2(), 50.0, 1.0));
   line.points[7].x = 1e30;
-  EXPECT_THAT(fault_of(line), HasSubstr("x of point 7 is 1e+30 m"));
+  EXPECT_THAT(fault_of(line), HasSubstr("path_point[7].x is 1e+30 m"));
 }
 
 TEST(NavigationLines, ThatTurnBackOnTheSpotSayWhere) {
@@ -139,6 +140,13 @@ TEST(NavigationLines, KeepDifferentPriorities) {
   EXPECT_TRUE(prepared->faults.empty());
 }
 
+TEST(NavigationLines, WithoutPriorityZeroAreTold) {
+  const Polyline points = straight(Pose2(), 50.0, 1.0);
+  const auto prepared = prepare({recording(points, "a", 7), recording(points, "b", 3)});
+  EXPECT_THAT(prepared->faults,
+              testing::ElementsAre("path_priority of the best line, 'b', is 3, not 0: it counts as 0"));
+}
+
 TEST(NavigationLines, GetDifferentPrioritiesWhereTheyRepeat) {
   const Polyline points = straight(Pose2(), 50.0, 1.0);
   const auto prepared =
@@ -146,8 +154,30 @@ TEST(NavigationLines, GetDifferentPrioritiesWhereTheyRepeat) {
   EXPECT_EQ(prepared->lines.at(0).priority, 0u);
   EXPECT_EQ(prepared->lines.at(1).priority, 1u) << "the later one moves back";
   EXPECT_EQ(prepared->lines.at(2).priority, 2u);
-  ASSERT_EQ(prepared->faults.size(), 2u);
-  EXPECT_THAT(prepared->faults[0], HasSubstr("'b' shares its priority"));
+  EXPECT_THAT(prepared->faults,
+              testing::ElementsAre("path_priority of line 'b' is 0, which is taken: it now has "
+                                   "priority 1, and 1 more lines move back as well"));
+}
+
+TEST(NavigationLines, OfAnInfiniteNumberAreToldAndUsed) {
+  for (double LinePoint::*field : {&LinePoint::theta, &LinePoint::kappa, &LinePoint::dkappa, &LinePoint::s}) {
+    RecordedLine line = recording(straight(Pose2(), 50.0, 1.0), "a");
+    line.points[5].*field = -std::numeric_limits<double>::infinity();
+    const auto prepared = prepare({line});
+    ASSERT_EQ(prepared->lines.size(), 1u);
+    ASSERT_EQ(prepared->faults.size(), 1u);
+    EXPECT_THAT(prepared->faults[0], testing::StartsWith("line 'a': path_point[5]."));
+    EXPECT_THAT(prepared->faults[0], HasSubstr("is -inf: computed from the positions"));
+  }
+}
+
+TEST(NavigationLines, ByTheThousandAreTold) {
+  const Polyline points = straight(Pose2(), 2.0, 1.0);
+  std::vector<RecordedLine> lines;
+  for (std::uint32_t i = 0; i < 1001; ++i) lines.push_back(recording(points, std::to_string(i), i));
+  EXPECT_THAT(prepare(lines)->faults, testing::ElementsAre(HasSubstr("navigation_path has 1001 lines")));
+  lines.pop_back();
+  EXPECT_TRUE(prepare(lines)->faults.empty());
 }
 
 TEST(NavigationLines, OfTheWorstPriorityStayTheWorst) {

@@ -275,5 +275,19 @@ TEST(PoseBuffer, KeepsAFewSecondsOnly) {
   EXPECT_FALSE(buffer.at(from_seconds(5.0)));
 }
 
+TEST(Speeds, ThatDisagreeAreTold) {
+  Localization localization;
+  localization.heading = 0.5 * kPi;
+  localization.linear_velocity = {0.0, 10.0, 0.0};
+  const auto told = [&](double speed) { return speeds_disagree(localization, Chassis{Time{}, speed}); };
+  for (const double speed : {6.1, 10.0, 13.9}) EXPECT_FALSE(told(speed)) << speed;
+  for (const double speed : {5.9, 14.1, 36.0, -10.0}) EXPECT_TRUE(told(speed)) << speed;
+  EXPECT_THAT(*told(36.0),
+              HasSubstr("speed_mps is 36 m/s by its gear, but localization: pose.linear_velocity is 10 m/s"));
+  EXPECT_FALSE(told(std::numeric_limits<double>::quiet_NaN())) << "not given";
+  localization.linear_velocity.setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(told(36.0)) << "not given";
+}
+
 }  // namespace
 }  // namespace relative_map::core

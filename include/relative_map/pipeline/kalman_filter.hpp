@@ -22,6 +22,10 @@ class KalmanFilter {
   const State& state() const { return state_; }
   const Covariance& covariance() const { return covariance_; }
   double stddev(int i) const { return std::sqrt(covariance_(i, i)); }
+  /// False where numbers have run out of digits: nothing can be read from such a filter.
+  bool sound() const {
+    return state_.allFinite() && covariance_.allFinite() && covariance_.diagonal().minCoeff() >= 0.0;
+  }
 
   /// x = F x, P = F P F' + Q.
   template <class Transition, class Noise>

@@ -33,7 +33,7 @@ class RelativeMapPipeline {
   /// A message a little older than the newest one is late and dropped: false; one much older sets time back.
   bool set_localization(const Localization& link,
                         const std::optional<Eigen::Isometry3d>& link_from_base = std::nullopt);
-  void set_chassis(const Chassis& chassis) { chassis_ = check_chassis(chassis); }
+  void set_chassis(const Chassis& chassis);
   void set_lane_markers(const LaneMarkers& markers);
   /// Forgets all but configuration and lines, as after a jump of the clock.
   void reset();
@@ -57,6 +57,7 @@ class RelativeMapPipeline {
   VehicleState predicted(VehicleState vehicle, Time now) const;
   std::optional<Chassis> fresh_chassis(Time now) const;
   void add_remarks(const std::vector<std::string>& remarks);
+  void note(const std::vector<std::string>& remarks);
   std::variant<std::vector<TrackedLine>, Status> lines_in_reach(const VehicleState& vehicle);
   std::vector<LanePath> cut_lanes(const std::vector<TrackedLine>& lines, const VehicleState& vehicle);
   std::optional<MarkerPath> marker_path(const VehicleState& vehicle, Time now);
@@ -84,6 +85,7 @@ class RelativeMapPipeline {
   std::string current_id_;  ///< of the last map
   std::uint32_t sequence_num_ = 0;
   std::vector<std::string> remarks_;
+  std::vector<std::string> noted_;  ///< on inputs since the last tick, which a newer one may have replaced
 };
 
 }  // namespace relative_map::core

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <deque>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "relative_map/geometry/pose2.hpp"
@@ -27,6 +28,10 @@ Localization carry_to_base(const Localization& link, const Eigen::Isometry3d& li
 /// Speed is the chassis', else the velocity along the heading.
 std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
                                                       const std::optional<Chassis>& chassis);
+
+/// A sentence where the chassis and localization tell speeds of which one must be wrong; none: they agree, or
+/// one tells nothing.
+std::optional<std::string> speeds_disagree(const Localization& base, const Chassis& chassis);
 
 /// Whether the vehicle has moved by more than its speed explains: it was put elsewhere.
 bool has_jumped(const VehicleState& before, const VehicleState& after);

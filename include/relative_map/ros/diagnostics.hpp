@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "relative_map/model/map.hpp"
 
@@ -24,7 +25,13 @@ struct MapStatistics {
   double tick_time = 0.0;           ///< [s] of the last tick
   std::size_t maps = 0;
   std::map<std::string, std::size_t> empty_maps;  ///< by reason
+  std::size_t drop_outs = 0;  ///< of the map, in the last 10 s: a filled one, then an empty one
+  double empty_share = 0.0;   ///< [-] of the maps of the last 10 s
+  core::Status last_fault;    ///< of the last empty map
+  std::string remarks;        ///< on filled maps, the last within 2 s
   std::map<std::string, InputStatistics> inputs;  ///< by topic
+  std::size_t lines = 0;                          ///< that can be driven on
+  std::vector<std::string> line_faults;           ///< what was refused or repaired of them
   double clock_stands = 0.0;                      ///< [s] of the wall's clock that ROS time has not moved
 };
 

@@ -24,11 +24,13 @@ struct Publisher {
   std::string uri;      ///< where the master says that it can be asked
   std::string type;     ///< of its messages, e.g. relative_map/Chassis; empty: not known
   bool answers = true;  ///< false: it is registered, but cannot be reached
+  std::string md5sum;   ///< of its messages' definition; empty: not known
 };
 
 struct Topic {
-  std::string name;  ///< resolved
-  std::string type;  ///< as this package reads or writes it
+  std::string name;    ///< resolved
+  std::string type;    ///< as this package reads or writes it
+  std::string md5sum;  ///< of that type's definition here
   std::vector<Publisher> publishers;
   std::vector<std::string> subscribers;  ///< names of nodes, without the doctor
   std::vector<std::string> elsewhere;    ///< other topics with publishers of this type

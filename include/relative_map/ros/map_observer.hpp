@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "relative_map/pipeline/navigation_lines.hpp"
 #include "relative_map/ros/diagnostics.hpp"
 
 namespace relative_map {
@@ -18,6 +19,7 @@ class MapObserver {
   void note_input(const std::string& topic, const ros::Time& stamp, const ros::WallTime& arrival);
   /// `tick_time` [s] is what the map took to make and publish.
   void note_map(const core::RelativeMap& map, double tick_time, const ros::WallTime& now);
+  void note_lines(const core::NavigationLines& lines);
   /// ROS time as it goes by, or does not.
   void note_clock(const ros::Time& now, const ros::WallTime& wall_now);
   /// Rates and ages are those at the time of the call.
@@ -29,10 +31,18 @@ class MapObserver {
     std::deque<ros::WallTime> arrivals;
   };
 
+  struct Look {
+    ros::WallTime at;
+    bool filled;
+  };
+
   void settle_status(const core::Status& status, const ros::WallTime& now);
+  void count_drop_outs(const ros::WallTime& wall_now, MapStatistics& result) const;
 
   MapStatistics statistics_;
   std::map<std::string, Input> inputs_;
+  std::deque<Look> recent_;                     ///< maps
+  ros::WallTime remarked_;                      ///< the last time that there was a remark
   std::optional<ros::WallTime> differs_since_;  ///< the status from the settled one
   ros::Time clock_;
   std::optional<ros::WallTime> clock_since_;  ///< it has been at `clock_`

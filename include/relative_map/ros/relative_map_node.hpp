@@ -65,6 +65,7 @@ class RelativeMapNode {
   std::shared_ptr<const core::NavigationLines> new_lines_;
   core::PipelineConfig intake_config_;
   std::array<std::shared_ptr<const core::NavigationLines>, 2> kept_lines_;  ///< of the intake's thread
+  ThrottledLog intake_log_;                                                 ///< likewise
 
   ros::Publisher map_publisher_, markers_publisher_, centerline_publisher_;
   ros::Subscriber localization_subscriber_, chassis_subscriber_, lane_markers_subscriber_;
