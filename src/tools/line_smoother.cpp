@@ -58,6 +58,25 @@ Polyline with_closing(const Polyline& points, Ends ends) {
   return result;
 }
 
+/// Between which of the recorded points nothing was recorded, and where on the result that begins.
+void find_gap(const EditableLine& recorded, const PathPoints& path, SmoothedLine& result) {
+  std::size_t start = 0;
+  const Polyline raw = with_closing(recorded.points, recorded.ends);
+  for (std::size_t i = 0; i + 1 < raw.size(); ++i) {
+    const double gap = (raw[i + 1] - raw[i]).norm();
+    if (gap <= result.longest_gap) continue;
+    result.longest_gap = gap;
+    start = i;
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const PathPoint& point : path) {
+    const double distance = (point.position - raw[start]).squaredNorm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    result.gap_s = point.s;
+  }
+}
+
 /// The farthest that recording and result lie apart.
 Deviation deviation_of(const EditableLine& recorded, const Polyline& points) {
   const Polyline raw = with_closing(recorded.points, recorded.ends),
@@ -111,8 +130,10 @@ std::string place(double s) {
   return text.str();
 }
 
-void measure(SmoothedLine& result, const Deviation& deviation, const SmootherParam& param) {
+void measure(const EditableLine& recorded, const Deviation& deviation, const SmootherParam& param,
+             SmoothedLine& result) {
   const PathPoints path = path_of(result.line);
+  find_gap(recorded, path, result);
   result.length = length_of(result.line);
   result.greatest_deviation = deviation.distance;
   result.deviation_s = path[deviation.point].s;
@@ -170,7 +191,7 @@ bool run_rounds(const EditableLine& recorded, const SmootherParam& param, double
   }
   result.line.points = std::move(reference);
   result.line.z = heights_of(recorded, result.line.points);
-  measure(result, deviation, param);
+  measure(recorded, deviation, param, result);
   return true;
 }
 

@@ -167,6 +167,15 @@ TEST(Smoother, SparsePointsAndHeightsGoAlong) {
   for (const LinePoint& point : line.points) EXPECT_NEAR(point.z, 10.0 + 0.01 * point.s, 0.02);
 }
 
+TEST(Smoother, TellsTheLongestGapOfTheRecording) {
+  RecordedLine recorded = demo_road().lane(0.0, 0.5);
+  EXPECT_NEAR(smooth(recorded).longest_gap, 0.5, 0.01);
+  recorded.points.erase(recorded.points.begin() + 201, recorded.points.begin() + 241);
+  const SmoothedLine result = smooth(recorded);
+  EXPECT_NEAR(result.longest_gap, 20.5, 0.1);
+  EXPECT_NEAR(result.gap_s, 100.0, 0.6);
+}
+
 TEST(Smoother, TheShortestLineIsSmoothedToo) {
   EXPECT_EQ(smooth(test::recording({{0.0, 0.0}, {1.0, 0.1}})).fault, "");
 }
