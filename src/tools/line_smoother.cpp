@@ -20,6 +20,7 @@ constexpr double kTolerance = 1e-4;      // [m] of the bound
 constexpr double kLongestSegment = 5.0;  // [m] a recording with longer ones says nothing between its points
 constexpr std::size_t kLookAround = 12;  // segments of the recording
 constexpr double kAstray = 20.0;         // times the bound
+constexpr double kRoomy = 0.9;           // of the bound
 constexpr double kFollowInNoise = 5.0;   // [m] that keeps curves from being cut where the bound is wide
 // Of the bound, softest first: so soft, it gives way before the line gets kinks. Where that is too much, it
 // is made to hold, as long as the vehicle can follow.
@@ -224,19 +225,20 @@ SmoothedLine smooth_line(const EditableLine& recorded, const SmootherParam& para
 
 std::optional<SmootherParam> find_feasible(const EditableLine& recorded, const SmootherParam& param,
                                            double max_bound, const std::function<void(double)>& progress) {
+  std::optional<SmootherParam> feasible;
   SmootherParam tried = param;
   tried.follow = kFollowInNoise;
-  const auto works = [&] { return smooth_line(recorded, tried, progress).fault.empty(); };
   for (double bound = param.bound; bound < max_bound; bound *= 2.0) {
     tried.bound = std::min(2.0 * bound, max_bound);
     const SmoothedLine wide = smooth_line(recorded, tried, progress);
     if (!wide.fault.empty()) continue;
-    // Between the one that is too narrow and this: what it has used of it.
-    const SmootherParam found = tried;
-    tried.bound = std::max(bound, std::ceil(20.0 * wide.greatest_deviation + 1.0) / 20.0);
-    return tried.bound < found.bound && works() ? tried : found;
+    feasible = tried;
+    // A bound that binds makes the line rough.
+    if (wide.greatest_deviation > kRoomy * tried.bound) continue;
+    tried.bound = std::ceil(20.0 * wide.greatest_deviation + 1.0) / 20.0;
+    return smooth_line(recorded, tried, progress).fault.empty() ? tried : feasible;
   }
-  return std::nullopt;
+  return feasible;
 }
 
 }  // namespace relative_map::core
