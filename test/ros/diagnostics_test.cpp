@@ -101,7 +101,8 @@ TEST(Diagnostics, WarnOfAMapThatComesAndGoes) {
 }
 
 TEST(Diagnostics, AreOkWhereTheMapWasGoneForAFrameOrTwo) {
-  for (const char* pattern : {"++++-+++++", "----------++++++++", "+++++++++++++-++++++++++++++-+++++++++++++"}) {
+  for (const char* pattern :
+       {"++++-+++++", "----------++++++++", "+++++++++++++-++++++++++++++-+++++++++++++"}) {
     EXPECT_EQ(summary_of(after_maps(pattern)).level, DiagnosticStatus::OK) << pattern;
   }
   EXPECT_EQ(summary_of(after_maps("+-+-+-+", 10.5)).level, DiagnosticStatus::OK) << "long ago";
