@@ -142,18 +142,20 @@ class Reader:
 
     def keep_lanes(self, message, pose):
         if not message.hdmap.lane or not math.isfinite(sum(pose)):
-            self.finish_stretch(LANE_STEP)
+            self.finish_stretch(ahead=LANE_STEP)
             return
         moved = math.hypot(pose[0] - self.kept[0][0], pose[1] - self.kept[0][1]) if self.kept else math.inf
         if moved >= LANE_STEP:
-            self.finish_stretch(moved)
+            self.finish_stretch(until=pose if moved <= LANE_REACH else None)
             self.kept = pose, message
 
-    def finish_stretch(self, length):
+    def finish_stretch(self, ahead=LANE_REACH, until=None):
         """Lanes up to where the next map's begin, so that each place is drawn once."""
         if self.kept:
-            pose, message = self.kept
-            self.stretches.append(carry(lanes_of(message, 0.0, min(length, LANE_REACH) + 0.6), pose))
+            (x, y, heading), message = self.kept
+            if until:
+                until = carried(numpy.array([[until[0] - x, until[1] - y]]), (0.0, 0.0, -heading))[0]
+            self.stretches.append(carry(lanes_of(message, 0.0, ahead, until), (x, y, heading)))
         self.kept = None
 
 
@@ -192,7 +194,7 @@ def read_drive(bag, path, topic, convention, progress):
             progress((count + 1) / total)
     except Exception as fault:  # of rosbag, of decompression, of deserialization
         raise Fault("%s: it is damaged after %d maps: %s" % (path, len(reader.columns), fault or type(fault).__name__))
-    reader.finish_stretch(LANE_REACH)
+    reader.finish_stretch()
     if not reader.columns:
         raise Fault("%s: there is no map on %s" % (path, topic))
     return Drive(reader.columns, reader.origin or (0.0, 0.0), reader.stretches, reader.notes)

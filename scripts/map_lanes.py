@@ -3,6 +3,7 @@ import math
 
 import numpy
 
+OVERLAP = 0.3  # [m] of stretches that follow each other: no seam shows
 SEARCHED = 25.0  # [m] of a curve, from its start: the vehicle is beside one of these points
 
 
@@ -34,17 +35,24 @@ def part(points, start, end):
     return numpy.column_stack([numpy.interp(wanted, s, points[:, axis]) for axis in (0, 1)])
 
 
+def foot_on(points, place, start, end):
+    """Where along a curve, between two arc lengths, it passes a place, and how far [m] to its left that is: (s, l)."""
+    s = arc_lengths(points)
+    looked_at = (s[1:] >= start) & (s[:-1] <= end)
+    looked_at[-1] |= not looked_at.any()
+    starts, along, s = points[:-1][looked_at], numpy.diff(points, axis=0)[looked_at], s[:-1][looked_at]
+    squares = numpy.maximum((along ** 2).sum(axis=1), 1e-12)
+    to_place = numpy.array(place) - starts
+    feet = starts + along * numpy.clip((to_place * along).sum(axis=1) / squares, 0.0, 1.0)[:, None]
+    i = int(numpy.argmin(numpy.hypot(*(feet - place).T)))
+    left = (along[i, 0] * to_place[i, 1] - along[i, 1] * to_place[i, 0]) / numpy.sqrt(squares[i])
+    return s[i] + numpy.hypot(*(feet[i] - starts[i])), left
+
+
 def beside_origin(points):
     """Where along a curve the vehicle, at the origin, is, and how far [m] to its left: (s, l).
     On a lap the curve may come by again farther on."""
-    s = arc_lengths(points)
-    starts = points[:-1][s[:-1] <= SEARCHED]
-    along = numpy.diff(points, axis=0)[:len(starts)]
-    squares = numpy.maximum((along ** 2).sum(axis=1), 1e-12)
-    feet = starts + along * numpy.clip(-(starts * along).sum(axis=1) / squares, 0.0, 1.0)[:, None]
-    i = int(numpy.argmin(numpy.hypot(*feet.T)))
-    left = (starts[i, 0] * along[i, 1] - starts[i, 1] * along[i, 0]) / numpy.sqrt(squares[i])
-    return s[i] + numpy.hypot(*(feet[i] - starts[i])), left
+    return foot_on(points, (0.0, 0.0), 0.0, SEARCHED)
 
 
 def carried(points, pose):
@@ -53,8 +61,13 @@ def carried(points, pose):
     return points @ numpy.array([[c, s], [-s, c]]) + (x, y)
 
 
-def lanes_of(message, behind=math.inf, ahead=math.inf):
-    """The lanes of a map in the body frame, so far [m] along them from the vehicle."""
+def lanes_of(message, behind=math.inf, ahead=math.inf, until=None):
+    """The lanes of a map in the body frame, so far [m] along them from the vehicle, or up to beside a place ahead."""
+    def end(points, here):
+        if until is None:
+            return here + ahead
+        return foot_on(points, until, here, here + SEARCHED + 2.0 * math.hypot(*until))[0]
+
     lanes = []
     priorities = {path.lane_id: path.navigation_path.path_priority for path in message.navigation_path}
     for lane in message.hdmap.lane:
@@ -66,10 +79,11 @@ def lanes_of(message, behind=math.inf, ahead=math.inf):
             if len(points) < 2 or not numpy.isfinite(points).all():
                 break
             here = beside_origin(points)[0]
-            curves.append(part(points, here - behind, here + ahead))
+            first, last = here - behind, end(points, here) + OVERLAP
+            curves.append(part(points, first, last))
             ends = [kind.s for kind in kinds[1:]] + [math.inf]
-            paints.append([(part(points, max(kind.s, here - behind), min(end, here + ahead)),
-                            kind.types[0] if kind.types else 0) for kind, end in zip(kinds, ends)])
+            paints.append([(part(points, max(kind.s, first), min(kind_end, last)), kind.types[0] if kind.types else 0)
+                           for kind, kind_end in zip(kinds, ends)])
         if len(curves) == 3:
             lanes.append(Lane(*curves, priorities.get(lane.id, 99), lane.id == message.current_lane_id, paints[:2]))
     return lanes

@@ -66,9 +66,11 @@ int collect(const Json& object, GeoLine& line) {
 }  // namespace
 
 GeoLine read_geojson(const std::string& path) {
+  const std::string content = read_whole_file(path);
+  if (content.empty()) throw std::runtime_error(path + ": has no points");
   Json document;
   try {
-    document = Json::parse(read_whole_file(path));
+    document = Json::parse(content);
   } catch (const Json::parse_error& error) {
     throw std::runtime_error(path + ": not valid JSON near byte " + std::to_string(error.byte));
   } catch (const Json::exception&) {

@@ -81,6 +81,7 @@ std::string degrees(double value) {
 
 GeoLine read_gpx(const std::string& path) {
   const std::string content = read_whole_file(path);
+  if (content.empty()) throw std::runtime_error(path + ": has no points");
   tinyxml2::XMLDocument document;
   if (document.Parse(content.data(), content.size()) != tinyxml2::XML_SUCCESS) {
     throw std::runtime_error(path + ": is no whole XML file, from line " +

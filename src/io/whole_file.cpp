@@ -72,12 +72,6 @@ void expect_replaceable(const std::string& path) {
   if (access(path.c_str(), W_OK) != 0) fail(path, errno);
 }
 
-bool is_device(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  return fs::is_character_file(status) || fs::is_fifo(status);
-}
-
 void write_device(const std::string& path, const std::string& content) {
   OpenFile file(path, O_WRONLY, 0);
   int error = file.opened();
@@ -96,6 +90,26 @@ int write_synced(const std::string& path, const std::string& content) {
 }
 
 }  // namespace
+
+bool is_device(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::is_character_file(status) || fs::is_fifo(status);
+}
+
+void expect_writable(const std::string& path) {
+  if (is_device(path)) {
+    if (access(path.c_str(), W_OK) != 0) fail(path, errno);
+    return;
+  }
+  expect_replaceable(path);
+  fs::path folder = fs::path(followed(path)).parent_path();
+  if (folder.empty()) folder = ".";
+  std::error_code error;
+  if (access(folder.c_str(), F_OK) != 0) fail(path, errno);
+  if (!fs::is_directory(folder, error)) fail(path, ENOTDIR);
+  if (access(folder.c_str(), W_OK | X_OK) != 0) fail(path, errno);
+}
 
 std::string temporary_name(const std::string& path) {
   return followed(path) + ".tmp." + std::to_string(getpid());
@@ -120,8 +134,8 @@ void move_into_place(const std::string& temporary, const std::string& path) {
 }
 
 void write_whole_file(const std::string& path, const std::string& content) {
+  expect_writable(path);
   if (is_device(path)) return write_device(path, content);
-  expect_replaceable(path);
   const std::string temporary = temporary_name(path);
   if (const int error = write_synced(temporary, content); error != 0) {
     unlink(temporary.c_str());

@@ -1,21 +1,19 @@
 // A bag of the first day: somebody drives along a road by hand, and a satellite receiver is all that is
 // recorded.
 #include <ros/time.h>
-#include <rosbag/bag.h>
 #include <sensor_msgs/NavSatFix.h>
 
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "navigation_line_command.hpp"
 #include "relative_map/io/geodetic_projection.hpp"
-#include "relative_map/io/whole_file.hpp"
 #include "relative_map/simulation/vehicle_simulation.hpp"
+#include "whole_bag.hpp"
 
 namespace relative_map {
 namespace {
@@ -110,22 +108,13 @@ sensor_msgs::NavSatFix to_fix(const core::GeoPoint& place, const HandDrive& driv
 }
 
 void write_fixes(const std::string& path, const std::vector<core::GeoPoint>& places, const HandDrive& drive) {
-  const std::string temporary = core::temporary_name(path);
-  auto bag = std::make_unique<rosbag::Bag>();
-  try {
-    bag->open(temporary, rosbag::bagmode::Write);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      sensor_msgs::NavSatFix fix = to_fix(places[i], drive);
-      fix.header.stamp = ros::Time(kBagStart) + ros::Duration(kPeriod * static_cast<double>(i));
-      bag->write("/fix", fix.header.stamp, fix);
-    }
-    bag->close();
-  } catch (const std::exception& fault) {
-    static_cast<void>(bag.release());  // on a full disk its destructor writes once more, and throws
-    std::remove(temporary.c_str());
-    throw std::runtime_error("cannot write " + path + ": " + fault.what());
+  WholeBag bag(path);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    sensor_msgs::NavSatFix fix = to_fix(places[i], drive);
+    fix.header.stamp = ros::Time(kBagStart) + ros::Duration(kPeriod * static_cast<double>(i));
+    bag.write("/fix", fix.header.stamp, fix);
   }
-  core::move_into_place(temporary, path);
+  bag.close();
 }
 
 void run(const std::vector<std::string>& words) {
@@ -133,6 +122,7 @@ void run(const std::vector<std::string>& words) {
                                  "--sway", "--noise", "--bias", "--seed"});
   const std::vector<std::string>& files = line.files(2, 2, "LINE and OUT.bag");
   const HandDrive drive = parse(line);
+  expect_bag_writable(files[1]);
   std::vector<core::LinePoint> places;
   std::vector<core::GeoPoint> fixes;
   try {

@@ -10,6 +10,8 @@
 #include <sstream>
 
 #include "navigation_line_bag.hpp"
+#include "relative_map/io/whole_file.hpp"
+#include "whole_bag.hpp"
 
 namespace relative_map {
 
@@ -32,7 +34,9 @@ core::LineFormat format_for(const std::string& path, const std::string& format) 
   if (known) return *known;
   if (!format.empty())
     throw UsageError("'" + format + "' is no format: smoothed, one-line, csv, gpx, geojson, bag");
-  throw UsageError(path + ": its format is not known by its extension: name it by --from or --to");
+  throw UsageError(path +
+                   ": its format is not known by its extension, which may be .smoothed, .json, .csv, .gpx, "
+                   ".geojson or .bag");
 }
 
 bool is_bag(const std::string& path, const std::string& format) {
@@ -135,6 +139,12 @@ void save_line(const std::string& path, const core::LineFile& file, const std::s
                const core::WriteOptions& options, const std::string& topic) {
   if (is_bag(path, format)) return write_path_bag(path, topic, file);
   core::write_line(path, format_for(path, format), file, options);
+}
+
+void expect_savable(const std::string& path, const std::string& format) {
+  if (is_bag(path, format)) return expect_bag_writable(path);
+  format_for(path, format);
+  core::expect_writable(path);
 }
 
 void print_written(const std::string& path, const core::RecordedLine& line) {

@@ -60,6 +60,10 @@ core::LineFile load_line(const std::string& path, const std::string& format = ""
 void save_line(const std::string& path, const core::LineFile& file, const std::string& format = "",
                const core::WriteOptions& options = {}, const std::string& topic = "");
 
+/// Throws what save_line() would for a path that can't be written to, or whose format is not known: before
+/// the work, and not after it.
+void expect_savable(const std::string& path, const std::string& format = "");
+
 /// "PATH: N points, L m", for every line that is written.
 void print_written(const std::string& path, const core::RecordedLine& line);
 

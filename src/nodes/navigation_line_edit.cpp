@@ -16,6 +16,7 @@ constexpr double kAnyLength = 1e7;  // [m]
 template <class Edit>
 int edit_file(const CommandLine& line, Edit edit) {
   const Words& files = line.files(2, 2, "IN and OUT");
+  expect_savable(files[1]);
   core::LineFile file = load_line(files[0]);
   try {
     file.line = core::make_recorded(edit(core::make_editable(file.line)));
@@ -72,6 +73,7 @@ int run_join(const Words& words, const Remappings&) {
   const CommandLine line(words, {"--gap"});
   const double gap = line.number("--gap", 5.0, 0.0, 100.0);
   const Words& files = line.files(3, 1000, "two or more IN and one OUT");
+  expect_savable(files.back());
   core::LineFile joined;
   std::vector<core::EditableLine> lines;
   for (std::size_t i = 0; i + 1 < files.size(); ++i) {
@@ -105,6 +107,7 @@ int run_convert(const Words& words, const Remappings&) {
   write.separator = separator_of(line.text("--separator", "comma"));
   write.geographic = line.has("--lonlat");
   const core::GeoReference reference = reference_of(line);
+  expect_savable(files[1], line.text("--to"));
   core::LineFile file = load_line(files[0], line.text("--from"), {reference}, line.text("--topic"));
   if (reference.projection != core::Projection::kNone) {
     const std::string why = core::conflict({"", reference}, {"", file.header.reference});
@@ -166,7 +169,8 @@ Example: navigation_line close lap.smoothed loop.smoothed
 
 const Command kOffset = {"offset", "a parallel lane", R"(Usage: navigation_line offset IN OUT --distance D
 
-Smooth the line first: noise has curves that no parallel can follow.
+Smooth the line first: noise has curves that no parallel can follow. A parallel that would fold, or cross itself where
+the line comes near to itself, is refused with the place.
 
   --distance D   [m] to the left; negative: to the right
 

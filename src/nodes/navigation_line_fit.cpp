@@ -1,6 +1,7 @@
 // Subcommands of navigation_line that make a line fit to be driven on, or say whether it is.
 #include <cstdio>
 #include <iostream>
+#include <sstream>
 
 #include "navigation_line_command.hpp"
 #include "relative_map/tools/line_check.hpp"
@@ -12,11 +13,33 @@ namespace {
 using Remappings = std::map<std::string, std::string>;
 using Words = std::vector<std::string>;
 
+constexpr double kMaxBound = 10.0;  // [m]
+
+/// "would do" for what find_feasible() has found.
+std::string advice(const core::EditableLine& line, const core::SmootherParam& param) {
+  ProgressBar bar;
+  const std::optional<core::SmootherParam> found =
+      core::find_feasible(line, param, kMaxBound, [&](double done) { bar.show(done); });
+  std::ostringstream text;
+  if (found) {
+    text << "; --bound " << found->bound << " --follow " << found->follow << " would do";
+  } else {
+    text << "; nor is any bound up to " << kMaxBound << " m enough: cut that part out, or record it again";
+  }
+  return text.str();
+}
+
 core::SmoothedLine smooth(const core::LineFile& file, const core::SmootherParam& param,
                           const std::string& path) {
   try {
-    ProgressBar bar;
-    return core::smooth_line(core::make_editable(file.line), param, [&](double done) { bar.show(done); });
+    const core::EditableLine line = core::make_editable(file.line);
+    core::SmoothedLine result;
+    {
+      ProgressBar bar;
+      result = core::smooth_line(line, param, [&](double done) { bar.show(done); });
+    }
+    if (!result.fault.empty()) throw std::runtime_error(result.fault + advice(line, param));
+    return result;
   } catch (const std::runtime_error& fault) {
     throw std::runtime_error(path + ": " + fault.what());
   }
@@ -26,13 +49,13 @@ int run_smooth(const Words& words, const Remappings&) {
   const CommandLine line(words, {"--bound", "--spacing", "--follow", "--max-curvature"});
   const Words& files = line.files(2, 2, "IN and OUT");
   core::SmootherParam param;
-  param.bound = line.number("--bound", param.bound, 0.01, 10.0);
+  param.bound = line.number("--bound", param.bound, 0.01, kMaxBound);
   param.spacing = line.number("--spacing", param.spacing, 0.2, 2.0);
   param.follow = line.number("--follow", param.follow, 2.0, 50.0);
   param.max_curvature = line.number("--max-curvature", param.max_curvature, 1e-3, 10.0);
+  expect_savable(files[1]);
   core::LineFile file = load_line(files[0]);
   const core::SmoothedLine result = smooth(file, param, files[0]);
-  if (!result.fault.empty()) throw std::runtime_error(files[0] + ": " + result.fault);
   file.line = core::make_recorded(result.line);
   save_line(files[1], file);
   std::printf("%s: %zu points, %.2f m%s\n", files[1].c_str(), file.line.points.size(), result.length,
@@ -63,11 +86,13 @@ std::size_t check_file(const std::string& path, const core::LineFile& file,
 }
 
 int run_check(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--max-gap", "--max-curvature", "--utm", "--origin", "--frame"});
+  const CommandLine line(
+      words, {"--max-gap", "--max-curvature", "--max-curvature-rate", "--utm", "--origin", "--frame"});
   const Words& files = line.files(1, 1000, "one or more files");
   core::LineCheckParam param;
   param.max_gap = line.number("--max-gap", param.max_gap, 0.01, 1e4);
   param.max_curvature = line.number("--max-curvature", param.max_curvature, 1e-3, 10.0);
+  param.max_curvature_rate = line.number("--max-curvature-rate", param.max_curvature_rate, 1e-3, 100.0);
   core::LineHeader expected{line.text("--frame"), reference_of(line)};
   std::string expected_by = "this call";
   std::size_t faults = 0;
@@ -102,16 +127,17 @@ const Command kSmooth = {"smooth", "least curvature change within a bound",
                          R"(Usage: navigation_line smooth IN OUT [OPTION]...
 
 Finds the line of least curvature change that stays beside the recording. The ends are kept, and a loop stays one.
-theta, kappa, dkappa and s are those of the result. If the bound cannot be held it says where, and writes nothing.
+theta, kappa, dkappa and s are those of the result. If the bound cannot be held it says where, and with which --bound and
+--follow it could be, and writes nothing.
 
   --bound D           [m] that the recorded points may lie beside the result (0.25)
   --spacing D         [m] of the result's points (0.5)
   --follow L          [m] bends much longer than this stay where they were recorded (30); with a wide bound for
-                      a noisy recording, 10 keeps curves from being cut
+                      a noisy recording, 5 keeps curves from being cut
   --max-curvature K   [1/m] that the vehicle can drive (0.25)
 
 Example: navigation_line smooth raw.smoothed lane.smoothed
-         navigation_line smooth gps.smoothed lane.smoothed --bound 1.0 --follow 10
+         navigation_line smooth gps.smoothed lane.smoothed --bound 1.0 --follow 5
 )",
                          run_smooth};
 
@@ -119,11 +145,13 @@ const Command kCheck = {"check", "is a file fit to be driven on?",
                         R"(Usage: navigation_line check FILE... [OPTION]...
 
 Lists every fault with its place: gaps, kinks, duplicate points, s or a line that goes backward, curvature above the
-vehicle's limit, a line beside itself, coordinates that can't be of their zone, files that don't fit to each other.
+vehicle's limit, curvature that changes faster than the vehicle can steer (at up to 15 m/s, and 3 m/s² sideways), also at
+the seam of a loop, a line beside itself, coordinates that can't be of their zone, files that don't fit to each other.
 Exit code 0: none; 1: some.
 
   --max-gap D              [m] between points (5)
   --max-curvature K        [1/m] that the vehicle can drive (0.25)
+  --max-curvature-rate R   [1/(m s)] that its steering can change that by (0.3)
   --utm ZONE, --origin LAT,LON[,ALT], --frame NAME   what the files should be in
 
 Example: navigation_line check left.smoothed middle.smoothed right.smoothed --utm 50N

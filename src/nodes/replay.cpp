@@ -2,7 +2,6 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <tf2/buffer_core.h>
-#include <tf2_msgs/TFMessage.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -17,8 +16,11 @@
 #include <string>
 #include <vector>
 
+#include "bag_input.hpp"
 #include "relative_map/ros/diagnostics.hpp"
+#include "relative_map/ros/line_loader.hpp"
 #include "relative_map/ros/map_engine.hpp"
+#include "whole_bag.hpp"
 
 namespace relative_map {
 namespace {
@@ -30,7 +32,9 @@ constexpr const char* kUsage =
     "through\n"
     "the map's pipeline and writes the maps to OUT.bag on /relative_map, each at its tick's time.\n"
     "\n"
-    "  --config FILE   parameters as in config/relative_map.yaml\n"
+    "  --config FILE   parameters as in config/relative_map.yaml; its navigation_lines are driven on until "
+    "IN.bag "
+    "has others\n"
     "  --urdf FILE     the vehicle, for its footprint\n"
     "\n"
     "A pause of more than a minute without input, as where a clock was set, gets maps for its first minute "
@@ -105,29 +109,18 @@ class ProgressBar {
   int last_percent_ = -1;
 };
 
-/// Deletes a half-written file, unless it was kept.
-class PartFile {
- public:
-  explicit PartFile(std::string target) : target_(std::move(target)), part_(target_ + ".part") {}
-  ~PartFile() { std::remove(part_.c_str()); }
-  const std::string& path() const { return part_; }
-  void keep() {
-    if (std::rename(part_.c_str(), target_.c_str()) != 0) {
-      throw std::runtime_error(target_ + ": can't be written");
-    }
-  }
-
- private:
-  std::string target_, part_;
-};
-
 class Replay {
  public:
-  Replay(const NodeConfig& config, const rosbag::Bag& input, rosbag::Bag& output)
+  Replay(const NodeConfig& config, const rosbag::Bag& input, WholeBag& output)
       : config_(config), input_(input), output_(output), engine_(config, link_transforms(transforms_)) {}
 
+  /// Drives on these until the bag has others.
+  void set_lines(const std::shared_ptr<const core::NavigationLines>& lines) {
+    engine_.set_navigation_lines(lines);
+  }
+
   void run() {
-    load_static_transforms();
+    load_static_transforms(input_, transforms_);
     rosbag::View view(input_, [](const rosbag::ConnectionInfo* connection) {
       const std::string topic = frame_name(connection->topic);
       return topic == "navigation" || topic == "localization" || topic == "chassis" ||
@@ -170,15 +163,6 @@ class Replay {
   }
 
  private:
-  void load_static_transforms() {
-    for (const rosbag::MessageInstance& message :
-         rosbag::View(input_, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}))) {
-      const auto transforms = message.instantiate<tf2_msgs::TFMessage>();
-      if (!transforms) continue;
-      for (const auto& transform : transforms->transforms) transforms_.setTransform(transform, "bag", true);
-    }
-  }
-
   void deliver(const rosbag::MessageInstance& message) {
     const ros::Time received = message.getTime();
     if (const auto lines = message.instantiate<NavigationInfo>()) {
@@ -209,7 +193,7 @@ class Replay {
 
   const NodeConfig& config_;
   const rosbag::Bag& input_;
-  rosbag::Bag& output_;
+  WholeBag& output_;
   tf2::BufferCore transforms_;
   MapEngine engine_;
   std::size_t maps_ = 0, empty_ = 0;
@@ -217,33 +201,36 @@ class Replay {
   std::map<std::string, std::string> mistyped_;  ///< topic to type
 };
 
+/// Those that the configuration names, as the node loads them; null: none.
+std::shared_ptr<const core::NavigationLines> configured_lines(const std::string& config_file,
+                                                              const NodeConfig& config) {
+  const std::vector<std::string> files =
+      config_file.empty() ? std::vector<std::string>() : line_files(config_file);
+  if (files.empty()) return nullptr;
+  const auto lines = MapEngine::prepare(to_message(load_lines(files, "")), config.pipeline);
+  expect_all_loaded(*lines, files.size());
+  return lines;
+}
+
 void run(const Arguments& arguments) {
   const ParameterSet parameters = arguments.config.empty() ? ParameterSet() : read_yaml(arguments.config);
   const std::string urdf = arguments.urdf.empty() ? "" : read_file(arguments.urdf);
   const NodeConfig config = make_node_config(parameters, urdf);
+  const auto lines = configured_lines(arguments.config, config);
 
-  PartFile part(arguments.output);
-  rosbag::Bag input, output;
-  try {
-    input.open(arguments.input, rosbag::bagmode::Read);
-  } catch (const rosbag::BagException& fault) {
-    throw std::runtime_error(arguments.input + ": not a readable bag: " + fault.what());
-  }
-  try {
-    output.open(part.path(), rosbag::bagmode::Write);
-  } catch (const rosbag::BagException& fault) {
-    throw std::runtime_error(arguments.output + ": can't be written: " + fault.what());
-  }
+  expect_bag_writable(arguments.output);
+  rosbag::Bag input;
+  open_bag(arguments.input, input);
+  WholeBag output(arguments.output);
   Replay replay(config, input, output);
+  if (lines) replay.set_lines(lines);
   const auto start = std::chrono::steady_clock::now();
   try {
     replay.run();
     output.close();
   } catch (const std::exception& fault) {
-    throw std::runtime_error(arguments.input + ": can't be replayed to " + arguments.output + ": " +
-                             fault.what());
+    throw std::runtime_error(arguments.input + ": can't be replayed: " + fault.what());
   }
-  part.keep();
   replay.print_summary(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 

@@ -13,6 +13,8 @@ namespace {
 // Standard deviations at the start.
 constexpr double kBias0 = 0.6;          // [m]
 constexpr double kHeadingBias0 = 0.01;  // [rad]
+constexpr double kTurnBias0 = 0.003;    // [rad/s]
+constexpr double kCameraYaw0 = 0.005;   // [rad]
 // Of localization, white from message to message.
 constexpr double kPositionNoise = 0.03;   // [m]
 constexpr double kHeadingNoise = 0.0035;  // [rad]
@@ -22,23 +24,20 @@ constexpr double kHeadingBiasWalk = 0.0015;  // [rad]
 constexpr double kHeadingWalk = 0.002;       // [rad] of odometry
 constexpr double kSlipWalk = 0.02;           // [m] of odometry, sideways
 constexpr double kSpeedWalk = 0.05;          // [m] of odometry, along
+constexpr double kTurnBiasWalk = 5e-5;       // [rad/s]
+constexpr double kCameraYawWalk = 1e-4;      // [rad]
 constexpr double kSpeedScale = 0.01;         // [-] of the speed, besides
 
-constexpr double kJumpDistance = 40.0;       // squared, in standard deviations: localization has jumped
-constexpr double kRecording = 0.4;           // [m] of one line against another
-constexpr double kOtherWidth = 0.1;          // [m] of one lane against another
-constexpr double kMaxHeadingBias = 0.1;      // [rad] of localization: no estimate beyond it is one
-constexpr double kLongestGap = 1.0;          // [s] between poses that odometry bridges
-constexpr double kHoldTime = 1.0;            // [s] without paint until the estimate starts to decay
-constexpr double kForgetTime = 60.0;         // [s] without paint until nothing is left worth having
-constexpr double kNarrowestHalfWidth = 1.0;  // [m] of a lane beside
-constexpr double kBehind = 1.5;              // knots behind the vehicle
+constexpr double kJumpDistance = 40.0;   // squared, in standard deviations: localization has jumped
+constexpr double kRecording = 0.4;       // [m] of one line against another
+constexpr double kOtherWidth = 0.1;      // [m] of one lane against another
+constexpr double kMaxHeadingBias = 0.1;  // [rad] of localization: no estimate beyond it is one
+constexpr double kLongestGap = 1.0;      // [s] between poses that odometry bridges
+constexpr double kHoldTime = 1.0;        // [s] without paint until the estimate starts to decay
+constexpr double kForgetTime = 60.0;     // [s] without paint until nothing is left worth having
+constexpr double kBehind = 1.5;          // knots behind the vehicle
 
 using Vector3 = Eigen::Vector3d;
-
-Point2 normal_of(double heading) {
-  return {-std::sin(heading), std::cos(heading)};
-}
 
 }  // namespace
 
@@ -62,6 +61,8 @@ void LaneEstimator::start(const VehicleState& localized) {
   p.block<3, 3>(kX, kBiasX) = p.block<3, 3>(kBiasX, kX) = -p.block<3, 3>(kBiasX, kBiasX);
   x[kLeft] = x[kRight] = half_width_;
   p.block<2, 2>(kLeft, kLeft) = HalfWidthModel::unknown();
+  p(kTurnBias, kTurnBias) = kTurnBias0 * kTurnBias0;
+  p(kCameraYaw, kCameraYaw) = kCameraYaw0 * kCameraYaw0;
   p.block<OffsetProfile::kKnots, OffsetProfile::kKnots>(kFirstKnot, kFirstKnot) = OffsetProfile::prior();
   last_ = localized;
 }
@@ -102,31 +103,35 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
 
 /// Back to what localization says, and to the lane that is expected.
 void LaneEstimator::decay(double kept) {
-  using Part = Eigen::Matrix<double, kLeft, kLeft>;
-  Part f = f.Identity();
-  f.block<3, 3>(kX, kBiasX) = (1.0 - kept) * Eigen::Matrix3d::Identity();
-  f.block<3, 3>(kBiasX, kBiasX) = kept * Eigen::Matrix3d::Identity();
-  filter_.predict_part<kX, kLeft>(f * filter_.state().head<kLeft>(), f, Part::Zero());
+  Eigen::Matrix<double, 6, 6> f = f.Identity();
+  f.topRightCorner<3, 3>() = (1.0 - kept) * Eigen::Matrix3d::Identity();
+  f.bottomRightCorner<3, 3>() *= kept;
+  filter_.predict_part<kX, 6>(f * filter_.state().segment<6>(kX), f, f.Zero());
   auto half_widths = filter_.state().segment<2>(kLeft).array();
   half_widths += (1.0 - kept) * (half_width_ - half_widths);
 }
 
 void LaneEstimator::follow_odometry(const VehicleState& to, double dt) {
-  const double way = 0.5 * (last_->speed + to.speed) * dt, turn = 0.5 * (last_->yaw_rate + to.yaw_rate) * dt;
-  const Vector3 pose = filter_.state().segment<3>(kX);
-  const double heading = pose[2] + 0.5 * turn;
+  const double way = 0.5 * (last_->speed + to.speed) * dt;
+  Eigen::Vector4d moved = filter_.state().segment<4>(kTurnBias);  // with the pose
+  const double turn = (0.5 * (last_->yaw_rate + to.yaw_rate) - moved[0]) * dt;
+  const double heading = moved[3] + 0.5 * turn;
   const Point2 ahead(std::cos(heading), std::sin(heading)), left = left_of(ahead);
-  Eigen::Matrix3d f = f.Identity(), q = q.Zero();
-  f.block<2, 1>(0, 2) = way * left;
+  moved += Eigen::Vector4d(0.0, way * ahead.x(), way * ahead.y(), turn);
+  Eigen::Matrix4d f = f.Identity(), q = q.Zero();
+  f.block<2, 1>(1, 3) = way * left;
+  f(3, 0) = -dt;
   const double along = kSpeedWalk * kSpeedWalk * dt + kSpeedScale * kSpeedScale * std::abs(to.speed * way);
   const double aside = kSlipWalk * kSlipWalk * dt;
-  q.block<2, 2>(0, 0) = along * ahead * ahead.transpose() + aside * left * left.transpose();
-  q(2, 2) = kHeadingWalk * kHeadingWalk * dt;
-  filter_.predict_part<kX, 3>(pose + Vector3(way * ahead.x(), way * ahead.y(), turn), f, q);
+  q(0, 0) = kTurnBiasWalk * kTurnBiasWalk * dt;
+  q.block<2, 2>(1, 1) = along * ahead * ahead.transpose() + aside * left * left.transpose();
+  q(3, 3) = kHeadingWalk * kHeadingWalk * dt;
+  filter_.predict_part<kTurnBias, 4>(moved, f, q);
 
   const Vector3 bias_walk(kBiasWalk, kBiasWalk, kHeadingBiasWalk);
   filter_.covariance().diagonal().segment<3>(kBiasX) += dt * bias_walk.cwiseAbs2();
 
+  filter_.covariance()(kCameraYaw, kCameraYaw) += kCameraYawWalk * kCameraYawWalk * dt;
   const Eigen::Matrix2d kept = HalfWidthModel::transition(std::abs(way));
   filter_.predict_part<kLeft, 2>(kept * filter_.state().segment<2>(kLeft), kept,
                                  HalfWidthModel::noise(std::abs(way)));
@@ -219,80 +224,6 @@ void LaneEstimator::doubt_bias(double variance) {
     p(kX + i, kBiasX + i) -= variance;
     p(kBiasX + i, kX + i) -= variance;
   }
-}
-
-VehicleState LaneEstimator::corrected(const VehicleState& localized) const {
-  if (!informed()) return localized;
-  VehicleState state = localized;
-  const Filter::State& x = filter_.state();
-  state.map_from_base = Pose2(origin_ + Point2(x[kX], x[kY]), normalize_angle(x[kHeading]));
-  return state;
-}
-
-bool LaneEstimator::apply(const NavigationLine& line, const LineProjection& projection,
-                          double least_half_width, LanePath& lane) const {
-  if (!informed() || lane.id != line_id_) return false;
-  lane.left_half_width = std::max(least_half_width, filter_.state()[kLeft]);
-  lane.right_half_width = std::max(least_half_width, filter_.state()[kRight]);
-  lane.seen = {lane.left_half_width, lane.right_half_width, lane.s_at_vehicle + paint_range_};
-  const OffsetProfile profile(filter_.state().tail<OffsetProfile::kKnots>());
-  const double start =
-      (s_along(line, projection.s) - first_knot_s_ - lane.s_at_vehicle) / OffsetProfile::kSpacing;
-  for (PathPoint& point : lane.points) {
-    point.position += profile.at(start + point.s / OffsetProfile::kSpacing) * left_of(point.direction);
-  }
-  compute_arc_length(lane.points);
-  compute_geometry(lane.points);
-  locate_vehicle(lane);
-  return true;
-}
-
-void LaneEstimator::apply_beside(std::vector<LanePath>& lanes, std::size_t current) const {
-  const LanePath& lane = lanes[current];
-  if (!informed() || lane.id != line_id_ || !lane.seen) return;
-  const auto far_half_width = [&](const NextBorder& border, const LanePath& beside) {
-    return border.distance.state()[0] - std::abs(beside.l - lane.l);
-  };
-  const auto tell = [&](LanePath& beside, double half_width, double& own) {
-    if (half_width < kNarrowestHalfWidth) return std::optional<double>();
-    own = half_width;
-    beside.seen = SeenHalfWidths{{}, {}, beside.s_at_vehicle + paint_range_};
-    return std::optional<double>(half_width);
-  };
-  if (next_left_.known && current > 0) {
-    LanePath& left = lanes[current - 1];
-    if (const auto width = tell(left, far_half_width(next_left_, left), left.left_half_width)) {
-      left.seen->left = width;
-    }
-  }
-  if (next_right_.known && current + 1 < lanes.size()) {
-    LanePath& right = lanes[current + 1];
-    if (const auto width = tell(right, far_half_width(next_right_, right), right.right_half_width)) {
-      right.seen->right = width;
-    }
-  }
-}
-
-FusionState LaneEstimator::state(const LineProjection& projection, double heading) const {
-  FusionState state;
-  if (!informed()) return state;
-  state.method = "estimator";
-  const Filter::State& x = filter_.state();
-  const Filter::Covariance& p = filter_.covariance();
-  const double line_heading = heading - projection.heading_offset;
-  const Point2 left = normal_of(line_heading), along(left.y(), -left.x());
-  const Eigen::Matrix2d bias = p.block<2, 2>(kBiasX, kBiasX);
-  Jacobian<1> lateral = lateral.Zero();
-  lateral[kBiasX] = left.x();
-  lateral[kBiasY] = left.y();
-  lateral.tail<OffsetProfile::kKnots>() =
-      OffsetProfile::shares((line_s_ - first_knot_s_) / OffsetProfile::kSpacing);
-  state.lateral_offset = {lateral.dot(x), std::sqrt((lateral * p * lateral.transpose())(0, 0))};
-  state.longitudinal_offset = {-along.dot(Point2(x[kBiasX], x[kBiasY])), std::sqrt(along.dot(bias * along))};
-  state.heading_offset = {x[kBiasHeading], filter_.stddev(kBiasHeading)};
-  state.left_half_width = {x[kLeft], filter_.stddev(kLeft)};
-  state.right_half_width = {x[kRight], filter_.stddev(kRight)};
-  return state;
 }
 
 }  // namespace relative_map::core

@@ -14,11 +14,15 @@ constexpr double kOffset0 = 2.0;          // [m]
 constexpr double kSlope0 = 0.3;           // [-]
 constexpr double kCurvature0 = 0.05;      // [1/m]
 constexpr double kCurvatureRate0 = 2e-3;  // [1/m^2]
+constexpr double kTurnBias0 = 0.005;      // [rad/s]
+constexpr double kCameraYaw0 = 0.006;     // [rad]
 // ... and of the random walks, by the root of the way [m] or the time [s].
 constexpr double kCurvatureRateWalk = 4e-5;  // [1/m^2] by way
 constexpr double kCurvatureWalk = 2e-4;      // [1/m] by way
 constexpr double kHeadingWalk = 0.002;       // [rad] by time
 constexpr double kSlipWalk = 0.02;           // [m] by time
+constexpr double kTurnBiasWalk = 5e-5;       // [rad/s] by time
+constexpr double kCameraYawWalk = 1e-4;      // [rad] by time
 constexpr double kLongestGap = 1.0;          // [s] between poses that odometry bridges
 constexpr double kNothingSeen = 10.0;   // [m] of paint left ahead, below which the vehicle's own way counts
 constexpr double kSlowest = 3.0;        // [m/s] at which it tells anything
@@ -34,7 +38,7 @@ void MarkerLaneEstimator::start(double half_width) {
   Filter::State x = x.Zero();
   x[kLeft] = x[kRight] = half_width;
   Filter::State sigma;
-  sigma << kOffset0, kSlope0, kCurvature0, kCurvatureRate0, 0.0, 0.0;
+  sigma << kOffset0, kSlope0, kCurvature0, kCurvatureRate0, 0.0, 0.0, kTurnBias0, kCameraYaw0;
   Filter::Covariance p = sigma.cwiseAbs2().asDiagonal();
   p.block<2, 2>(kLeft, kLeft) = HalfWidthModel::unknown();
   filter_ = Filter(x, p);
@@ -56,9 +60,12 @@ void MarkerLaneEstimator::move(const VehicleState& to) {
       0.0, 1.0, d, d * d / 2.0,                                 //
       0.0, 0.0, 1.0, d,                                         //
       0.0, 0.0, 0.0, 1.0;
+  f(kSlope, kTurnBias) = dt;
   const double way = std::abs(d);
   q(kOffset, kOffset) = kSlipWalk * kSlipWalk * dt;
   q(kSlope, kSlope) = kHeadingWalk * kHeadingWalk * dt;
+  q(kTurnBias, kTurnBias) = kTurnBiasWalk * kTurnBiasWalk * dt;
+  q(kCameraYaw, kCameraYaw) = kCameraYawWalk * kCameraYawWalk * dt;
   q(kCurvature, kCurvature) = kCurvatureWalk * kCurvatureWalk * way;
   q(kCurvatureRate, kCurvatureRate) = kCurvatureRateWalk * kCurvatureRateWalk * way;
   f.block<2, 2>(kLeft, kLeft) = HalfWidthModel::transition(way);
@@ -75,6 +82,7 @@ void MarkerLaneEstimator::move(const VehicleState& to) {
 void MarkerLaneEstimator::follow_driver(const VehicleState& vehicle, double dt) {
   Eigen::Matrix<double, 2, kStates> h = h.Zero();
   h(0, kSlope) = h(1, kCurvature) = 1.0;
+  h(1, kTurnBias) = 1.0 / vehicle.speed;
   const Eigen::Vector2d driven(0.0, vehicle.yaw_rate / vehicle.speed);
   const Eigen::Vector2d noise(kDriverSlope * kDriverSlope, kDriverCurvature * kDriverCurvature);
   const Eigen::Matrix2d covariance = (noise / dt).asDiagonal();
@@ -89,7 +97,7 @@ MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples
     const Point2& point = paint.points[static_cast<std::size_t>(i)];
     const double x = point.x(), aslant = std::hypot(1.0, center.slope(x));
     auto row = result.jacobian.row(i);
-    row << 1.0, x, x * x / 2.0, x * x * x / 6.0, 0.0, 0.0;
+    row << 1.0, x, x * x / 2.0, x * x * x / 6.0, 0.0, 0.0, 0.0, -x;
     row[side] = sign * aslant;
     result.innovation[i] = point.y() - row.dot(filter_.state());
   }

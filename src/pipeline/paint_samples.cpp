@@ -13,11 +13,16 @@ constexpr double kOffset = 0.05;     // [m]
 constexpr double kSlope = 0.003;     // [-]
 constexpr double kCurvature = 6e-5;  // [1/m] of c2
 constexpr double kPoint = 0.02;      // [m] what a cubic does not follow
+// Of a camera that fits straight lines, where the lane bends.
+constexpr double kStraightCurvature = 0.02;  // [1/m] of c2
+constexpr double kStraightReach = 5.0;       // [m]
 
 // Paint beyond these is not the vehicle's own lane's.
 constexpr double kFarthest = 10.0;     // [m] beside the vehicle
 constexpr double kSteepest = 5.0;      // [-] slope
 constexpr double kMaxCurvature = 0.2;  // [1/m]
+
+using Distances = Eigen::Matrix<double, kPaintSamples, 1>;  // [m] from the camera
 
 constexpr double kStart = -2.0;  // [m] x from which on, behind the vehicle, it must be drivable
 constexpr double kStep = 1.0;    // [m]
@@ -30,6 +35,17 @@ bool drivable(const Cubic& cubic, double x_end) {
       return false;
   }
   return true;
+}
+
+/// Of a marker's points: its error is that of its coefficients.
+Eigen::Matrix<double, kPaintSamples, kPaintSamples> covariance_at(const Distances& x, double curvature,
+                                                                  double quality) {
+  const Distances one = x.Ones(), x2 = x.cwiseAbs2();
+  Eigen::Matrix<double, kPaintSamples, kPaintSamples> covariance =
+      kOffset * kOffset * one * one.transpose() + kSlope * kSlope * x * x.transpose() +
+      curvature * curvature * x2 * x2.transpose();
+  covariance.diagonal().array() += kPoint * kPoint;
+  return covariance / (quality * quality);
 }
 
 }  // namespace
@@ -56,7 +72,7 @@ std::optional<std::string> fault_of(const LaneMarker& marker, const NavigationLa
 PaintSamples sample_paint(const LaneMarker& marker, const Pose2& base_from_sensor) {
   PaintSamples samples;
   samples.type = marker.type;
-  Eigen::Matrix<double, kPaintSamples, 1> x;
+  Distances x;
   for (int i = 0; i < kPaintSamples; ++i) {
     x[i] = marker.longitude_start + (marker.view_range - marker.longitude_start) * i / (kPaintSamples - 1);
     samples.points[static_cast<std::size_t>(i)] =
@@ -64,11 +80,23 @@ PaintSamples sample_paint(const LaneMarker& marker, const Pose2& base_from_senso
   }
   samples.from = samples.points.front().x();
   samples.to = samples.points.back().x();
-  const Eigen::Matrix<double, kPaintSamples, 1> one = x.Ones(), x2 = x.cwiseAbs2();
-  samples.covariance = kOffset * kOffset * one * one.transpose() + kSlope * kSlope * x * x.transpose() +
-                       kCurvature * kCurvature * x2 * x2.transpose();
-  samples.covariance.diagonal().array() += kPoint * kPoint;
-  samples.covariance /= marker.quality * marker.quality;
+  samples.straight = marker.cubic.c2 == 0.0 && marker.cubic.c3 == 0.0;
+  samples.quality = marker.quality;
+  samples.covariance = covariance_at(x, kCurvature, marker.quality);
+  return samples;
+}
+
+PaintSamples near_part(const PaintSamples& straight) {
+  PaintSamples samples = straight;
+  const Point2 first = straight.points.front(), way = straight.points.back() - first;
+  const double share = std::min(1.0, kStraightReach / way.norm());
+  Distances x;
+  for (int i = 0; i < kPaintSamples; ++i) {
+    const double part = share * i / (kPaintSamples - 1);
+    samples.points[static_cast<std::size_t>(i)] = first + part * way;
+    x[i] = part * way.norm();
+  }
+  samples.covariance = covariance_at(x, kStraightCurvature, straight.quality);
   return samples;
 }
 

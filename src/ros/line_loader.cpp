@@ -1,6 +1,7 @@
 #include "relative_map/ros/line_loader.hpp"
 
 #include <XmlRpcValue.h>
+#include <yaml-cpp/yaml.h>
 
 #include <iomanip>
 #include <sstream>
@@ -26,6 +27,25 @@ std::vector<std::string> line_files(const XmlRpc::XmlRpcValue& parameter) {
     add(value);
   } else {
     for (int i = 0; i < value.size(); ++i) add(value[i]);
+  }
+  return files;
+}
+
+std::vector<std::string> line_files(const std::string& yaml_file) {
+  std::vector<std::string> files;
+  try {
+    const YAML::Node tree = YAML::LoadFile(yaml_file);
+    const YAML::Node value = tree.IsMap() ? tree[kLinesParameter] : YAML::Node();
+    if (!value || value.IsNull()) return files;
+    if (value.IsScalar()) return {value.Scalar()};
+    for (const YAML::Node& file : value) {
+      if (!value.IsSequence() || !file.IsScalar()) {
+        throw std::runtime_error(yaml_file + ": " + kLinesParameter + " must be a list of files");
+      }
+      files.push_back(file.Scalar());
+    }
+  } catch (const YAML::Exception& fault) {
+    throw std::runtime_error(yaml_file + ": " + fault.what());
   }
   return files;
 }

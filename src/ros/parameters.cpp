@@ -202,6 +202,8 @@ ParameterSet read_yaml(const std::string& file) {
     } else if (tree.IsDefined() && !tree.IsNull()) {
       throw std::runtime_error(file + ": is no map of parameters");
     }
+  } catch (const YAML::BadFile&) {
+    throw std::runtime_error(file + ": cannot be opened");
   } catch (const YAML::Exception& fault) {
     throw std::runtime_error(file + ": " + fault.what());
   }

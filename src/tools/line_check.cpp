@@ -7,6 +7,7 @@
 
 #include "relative_map/geometry/segment_index.hpp"
 #include "relative_map/tools/editable_line.hpp"
+#include "steering.hpp"
 
 namespace relative_map::core {
 
@@ -19,6 +20,7 @@ constexpr double kMaxHeadingError = 0.1;  // [rad]
 constexpr double kBesideItself = 1.0;     // [m]
 constexpr double kApart = 30.0;           // [m] along the line, of what lies beside itself
 constexpr double kSampling = 2.0;         // [m] of the search for that
+constexpr double kTightCurveReach = 1.5;  // [m]
 constexpr double kFar = 1000.0;           // [m] no gap, but a jump to another zone or origin
 
 template <class... Parts>
@@ -73,6 +75,7 @@ class Checker {
     const PathPoints path = path_of(line);
     check_kinks(line, path);
     check_curvature(path);
+    check_steering(line, path);
     check_headings(path);
     check_overlap(line, path);
     return faults_.take();
@@ -135,8 +138,10 @@ class Checker {
   }
 
   void check_kinks(const EditableLine& line, const PathPoints& path) {
-    for (std::size_t i = 1; i + 1 < path.size(); ++i) {
-      const Point2 before = line.points[i] - line.points[i - 1], after = line.points[i + 1] - line.points[i];
+    const std::size_t count = path.size(), open = line.closed() ? 0 : 1;
+    for (std::size_t i = open; i + open < count; ++i) {
+      const Point2 before = line.points[i] - line.points[(i + count - 1) % count];
+      const Point2 after = line.points[(i + 1) % count] - line.points[i];
       const double turn = std::abs(std::atan2(cross(before, after), before.dot(after)));
       if (turn > 0.5 * kPi) {
         faults_.add("backward", i, path[i].s, turn, sentence("the line turns back by ", turn, " rad"));
@@ -153,6 +158,32 @@ class Checker {
       faults_.add("curvature", i, path[i].s, kappa,
                   sentence("the curvature is ", kappa, " 1/m, and the vehicle's limit ", param_.max_curvature,
                            " 1/m"),
+                  3);
+    }
+  }
+
+  /// Points near those whose curvature is a fault already.
+  std::vector<bool> near_tight_curves(const PathPoints& path) const {
+    std::vector<bool> near(path.size(), false);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      if (std::abs(path[i].kappa) <= param_.max_curvature) continue;
+      for (std::size_t k = i + 1; k-- > 0 && path[i].s - path[k].s <= kTightCurveReach;) near[k] = true;
+      for (std::size_t k = i; k < path.size() && path[k].s - path[i].s <= kTightCurveReach; ++k)
+        near[k] = true;
+    }
+    return near;
+  }
+
+  void check_steering(const EditableLine& line, const PathPoints& path) {
+    const std::vector<Steering> all = steering_along(path, line.ends, length_of(line));
+    const std::vector<bool> said = near_tight_curves(path);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const Steering& steering = all[i];
+      if (steering.rate <= param_.max_curvature_rate || said[i]) continue;
+      faults_.add("curvature rate", i, path[i].s, steering.rate,
+                  sentence("the curvature goes from ", steering.before, " to ", steering.after,
+                           " 1/m within a metre: at ", steering.speed, " m/s by ", steering.rate,
+                           " 1/(m s), and the vehicle's limit is ", param_.max_curvature_rate),
                   3);
     }
   }
@@ -208,8 +239,8 @@ class Checker {
 }  // namespace
 
 std::vector<std::string> line_fault_kinds() {
-  return {"not finite", "zone",     "short", "duplicate", "gap",         "backward s",
-          "wrong s",    "backward", "kink",  "curvature", "wrong theta", "overlap"};
+  return {"not finite", "zone", "short",     "duplicate",      "gap",         "backward s", "wrong s",
+          "backward",   "kink", "curvature", "curvature rate", "wrong theta", "overlap"};
 }
 
 std::vector<LineFault> check_line(const RecordedLine& line, const LineHeader& header,

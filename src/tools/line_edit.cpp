@@ -14,7 +14,6 @@ constexpr double kMinLapLength = 30.0;    // [m]
 constexpr double kMaxTurn = 0.8;          // [rad] between ends that are to meet
 constexpr double kDirectionLength = 3.0;  // [m] of line that a direction at an end is taken from
 constexpr double kSeamLength = 50.0;      // [m] that an error at the seam is spread over
-constexpr double kMinStretch = 0.1;       // a parallel's length, by the line's: less is a fold, nearly
 
 std::string metres(double value) {
   std::ostringstream text;
@@ -171,26 +170,6 @@ EditableLine resample_by_curvature(const EditableLine& line, const std::vector<C
     s += step;
   }
   if (!line.closed()) sampler.add_to(result, sampler.length());
-  return result;
-}
-
-EditableLine offset(const EditableLine& line, double distance) {
-  const PathPoints path = path_of(line);
-  EditableLine result = line;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    if (1.0 - path[i].kappa * distance < kMinStretch) {
-      throw std::runtime_error("at s = " + metres(path[i].s) + " the curve's radius is " +
-                               metres(1.0 / std::abs(path[i].kappa)) + ": a parallel at " + metres(distance) +
-                               " would fold; smooth the line first, or take less");
-    }
-    result.points[i] += distance * left_of(path[i].direction);
-    const bool back =
-        i > 0 && (result.points[i] - result.points[i - 1]).dot(line.points[i] - line.points[i - 1]) <= 0.0;
-    if (back) {
-      throw std::runtime_error("at s = " + metres(path[i].s) + " the parallel at " + metres(distance) +
-                               " would fold; smooth the line first, or take less");
-    }
-  }
   return result;
 }
 

@@ -5,80 +5,28 @@
 #include <limits>
 #include <sstream>
 
-#include "relative_map/geometry/pose2.hpp"
+#include "pose_outliers.hpp"
+#include "vehicle_motion.hpp"
 
 namespace relative_map::core {
 
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWindow = 1.0;  // [s] before and after a pose, that its motion is taken from
-constexpr double kSurely = 0.5;  // cosine of the angle between heading and motion that says which way
-
-enum class Motion { kStanding, kForward, kReversing };
+constexpr double kAhead = 0.5;          // cosine of the angle between motion and the way to the next point
+constexpr double kNotableNoise = 0.05;  // [m]
 
 Point2 position(const RecordedPose& pose) {
   return {pose.x, pose.y};
 }
-
-/// Says for each pose how the vehicle moves, from the poses around it.
-class MotionFinder {
- public:
-  MotionFinder(const std::vector<RecordedPose>& poses, const RecorderParam& param)
-      : poses_(poses), origin_(position(poses[0])), param_(param) {
-    sums_.emplace_back(0.0, 0.0);
-    for (const RecordedPose& pose : poses) sums_.push_back(sums_.back() + position(pose) - origin_);
-  }
-
-  /// In the order of the poses.
-  Motion next(std::size_t i) {
-    const double now = poses_[i].stamp;
-    while (poses_[begin_].stamp < now - kWindow) ++begin_;
-    while (end_ < poses_.size() && poses_[end_].stamp <= now + kWindow) ++end_;
-    const Point2 velocity = velocity_over(begin_, end_);
-    if (!(velocity.norm() > param_.standing_speed)) return Motion::kStanding;
-    const Point2 direction = velocity.normalized();
-    const double heading = poses_[i].heading;
-    const double along = std::isfinite(heading) ? direction.dot(Pose2({}, heading).forward()) : 0.0;
-    if (std::abs(along) > kSurely) {
-      forward_ = along > 0.0;
-    } else if (moved_ && direction.dot(last_direction_) < 0.0) {
-      forward_ = !forward_;  // no car turns about between two poses: it has changed gear
-    }
-    moved_ = true;
-    last_direction_ = direction;
-    return forward_ ? Motion::kForward : Motion::kReversing;
-  }
-
- private:
-  /// Between the means of the first and the last third, which noise has little to do with.
-  Point2 velocity_over(std::size_t begin, std::size_t end) const {
-    const std::size_t third = std::max<std::size_t>(1, (end - begin) / 3);
-    if (end - begin < 2) return Point2::Zero();
-    const auto mean = [&](std::size_t from, std::size_t to) -> Point2 {
-      return (sums_[to] - sums_[from]) / static_cast<double>(to - from);
-    };
-    const auto mean_stamp = [&](std::size_t from, std::size_t to) {
-      return 0.5 * (poses_[from].stamp + poses_[to - 1].stamp);
-    };
-    const double time = mean_stamp(end - third, end) - mean_stamp(begin, begin + third);
-    if (!(time > 0.0)) return Point2::Zero();
-    return (mean(end - third, end) - mean(begin, begin + third)) / time;
-  }
-
-  const std::vector<RecordedPose>& poses_;
-  Point2 origin_;
-  const RecorderParam& param_;
-  std::vector<Point2> sums_;  ///< of positions, before each pose
-  std::size_t begin_ = 0, end_ = 0;
-  bool forward_ = true, moved_ = false;
-  Point2 last_direction_ = Point2::UnitX();
-};
+Point2 position(const LinePoint& point) {
+  return {point.x, point.y};
+}
 
 /// Leaves out the points that a reversing vehicle has come back over.
-void take_back(const RecordedPose& pose, const Point2& backward, Recording& recording) {
+void take_back(const Point2& place, const Point2& direction, Recording& recording) {
   std::vector<LinePoint>& points = recording.line.points;
-  while (!points.empty() && (Point2(points.back().x, points.back().y) - position(pose)).dot(backward) < 0.0) {
+  while (!points.empty() && (position(points.back()) - place).dot(direction) < 0.0) {
     points.pop_back();
     ++recording.taken_back;
   }
@@ -92,47 +40,71 @@ std::string jump_fault(const RecordedPose& before, const RecordedPose& after) {
   return text.str();
 }
 
-}  // namespace
+std::string no_motion_fault(const Recording& recording) {
+  std::ostringstream text;
+  text << "the vehicle has not moved forward";
+  if (recording.reversing > 0) text << ", but has reversed";
+  if (recording.noise < kNotableNoise) return text.str();
+  text.precision(2);
+  text << ": all its positions lie within their noise, of a standard deviation of " << recording.noise
+       << " m";
+  return text.str();
+}
 
-Recording record_line(const std::vector<RecordedPose>& poses, const RecorderParam& param) {
-  Recording recording;
-  if (poses.empty()) {
-    recording.fault = "there are no poses";
-    return recording;
-  }
+/// The first of the poses that no line can be made of.
+std::string fault_of(const std::vector<RecordedPose>& poses) {
+  if (poses.empty()) return "there are no poses";
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!std::isfinite(poses[i].x) || !std::isfinite(poses[i].y)) {
-      recording.fault = "pose " + std::to_string(i) + " has a position that is not finite";
-      return recording;
-    }
-    if (i > 0 && (position(poses[i]) - position(poses[i - 1])).norm() > param.max_jump) {
-      recording.fault = jump_fault(poses[i - 1], poses[i]);
-      return recording;
-    }
+    if (std::isfinite(poses[i].x) && std::isfinite(poses[i].y)) continue;
+    return "pose " + std::to_string(i) + " has a position that is not finite";
   }
-  MotionFinder finder(poses, param);
+  return "";
+}
+
+void add_points(const std::vector<RecordedPose>& poses, const VehicleMotion& motion, double spacing,
+                Recording& recording) {
   std::vector<LinePoint>& points = recording.line.points;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const RecordedPose& pose = poses[i];
-    switch (finder.next(i)) {
+    const PoseMotion& now = motion.poses[i];
+    switch (now.motion) {
       case Motion::kStanding:
         ++recording.standing;
         break;
-      case Motion::kReversing: {
+      case Motion::kReversing:
         ++recording.reversing;
-        const Point2 moved = i > 0 ? Point2(position(pose) - position(poses[i - 1])) : Point2(Point2::Zero());
-        take_back(pose, moved, recording);
+        take_back(position(poses[0]) + now.position, now.direction, recording);
         break;
-      }
       case Motion::kForward: {
-        const bool far =
-            points.empty() ||
-            (position(pose) - Point2(points.back().x, points.back().y)).norm() >= param.spacing - 1e-6;
-        if (far) points.push_back({pose.x, pose.y, pose.z, kNaN, kNaN, kNaN, kNaN});
+        const Point2 way = points.empty() ? Point2(Point2::Zero()) : position(pose) - position(points.back());
+        // Noise must not lead the line back.
+        const bool next = way.norm() >= spacing - 1e-6 && way.dot(now.direction) >= kAhead * way.norm();
+        if (points.empty() || next) points.push_back({pose.x, pose.y, pose.z, kNaN, kNaN, kNaN, kNaN});
       }
     }
   }
-  if (points.size() < 2) recording.fault = "the vehicle has not moved forward";
+}
+
+}  // namespace
+
+Recording record_line(const std::vector<RecordedPose>& recorded, const RecorderParam& param) {
+  Recording recording;
+  recording.fault = fault_of(recorded);
+  if (!recording.fault.empty()) return recording;
+  recording.outliers = find_outliers(recorded);
+  const std::vector<RecordedPose> poses = without(recorded, recording.outliers);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if ((position(poses[i]) - position(poses[i - 1])).norm() <= param.max_jump) continue;
+    recording.fault = jump_fault(poses[i - 1], poses[i]);
+    return recording;
+  }
+  const VehicleMotion motion = find_motion(poses, param.standing_speed);
+  recording.noise = motion.noise;
+  recording.moving = motion.moving;
+  recording.sideways = motion.sideways;
+  recording.headings_used = motion.headings_used;
+  add_points(poses, motion, param.spacing, recording);
+  if (recording.line.points.size() < 2) recording.fault = no_motion_fault(recording);
   return recording;
 }
 

@@ -20,6 +20,7 @@ constexpr double kTolerance = 1e-4;      // [m] of the bound
 constexpr double kLongestSegment = 5.0;  // [m] a recording with longer ones says nothing between its points
 constexpr std::size_t kLookAround = 12;  // segments of the recording
 constexpr double kAstray = 20.0;         // times the bound
+constexpr double kFollowInNoise = 5.0;   // [m] that keeps curves from being cut where the bound is wide
 // Of the bound, softest first: so soft, it gives way before the line gets kinks. Where that is too much, it
 // is made to hold, as long as the vehicle can follow.
 constexpr std::array<double, 3> kStiffnesses = {1e-2, 1.0, 1e2};
@@ -130,14 +131,22 @@ void measure(SmoothedLine& result, const Deviation& deviation, const SmootherPar
   if (result.greatest_deviation > param.bound + kTolerance) {
     fault << "the bound of " << param.bound << " m cannot be held " << place(result.deviation_s)
           << ": a line that the vehicle can drive lies " << result.greatest_deviation
-          << " m beside the recording there, so that a bound of "
-          << 0.01 * std::ceil(100.0 * result.greatest_deviation + 1.0) << " m would do";
+          << " m beside the recording there";
   } else if (result.greatest_kappa > param.max_curvature) {
     fault << "the bound of " << param.bound << " m cannot be held " << place(result.kappa_s)
           << ": within it, the line would have to bend by " << result.greatest_kappa
           << " 1/m, and the vehicle can bend by " << param.max_curvature << " 1/m";
   }
   result.fault = fault.str();
+}
+
+/// Where the points lie too wildly for any line to be found.
+std::string wild_fault(const Deviation& deviation, double spacing, double bound) {
+  std::ostringstream fault;
+  fault << std::fixed << std::setprecision(2) << "the bound of " << bound << " m cannot be held "
+        << place(spacing * static_cast<double>(deviation.point)) << ": the recorded points lie "
+        << deviation.distance << " m beside a smooth line there";
+  return fault.str();
 }
 
 /// Rounds about ever better references, at one stiffness of the bound. False if the numbers fail.
@@ -179,7 +188,7 @@ SmoothedLine smooth_line(const EditableLine& recorded, const SmootherParam& para
 
   double done = 0.0;
   const auto iterated = [&] { progress(done += 0.02 * (1.0 - done)); };
-  smoothest.fault = "this line cannot be solved: its points lie too wildly; try a greater spacing";
+  smoothest.fault = wild_fault(deviation_of(recorded, reference), spacing, param.bound);
   bool first = true;
   for (const double stiffness : kStiffnesses) {
     SmoothedLine result = smoothest;
@@ -190,6 +199,23 @@ SmoothedLine smooth_line(const EditableLine& recorded, const SmootherParam& para
   }
   progress(1.0);
   return smoothest;
+}
+
+std::optional<SmootherParam> find_feasible(const EditableLine& recorded, const SmootherParam& param,
+                                           double max_bound, const std::function<void(double)>& progress) {
+  SmootherParam tried = param;
+  tried.follow = kFollowInNoise;
+  const auto works = [&] { return smooth_line(recorded, tried, progress).fault.empty(); };
+  for (double bound = param.bound; bound < max_bound; bound *= 2.0) {
+    tried.bound = std::min(2.0 * bound, max_bound);
+    const SmoothedLine wide = smooth_line(recorded, tried, progress);
+    if (!wide.fault.empty()) continue;
+    // Between the one that is too narrow and this: what it has used of it.
+    const SmootherParam found = tried;
+    tried.bound = std::max(bound, std::ceil(20.0 * wide.greatest_deviation + 1.0) / 20.0);
+    return tried.bound < found.bound && works() ? tried : found;
+  }
+  return std::nullopt;
 }
 
 }  // namespace relative_map::core

@@ -2,8 +2,11 @@
 """Bad input to `navigation_line`: one sentence, an exit code that is not 0, and no file harmed."""
 
 import os
+import re
+import stat
 import subprocess
 
+import other_user
 import rospy
 import rostest
 from std_msgs.msg import String
@@ -43,9 +46,12 @@ class NavigationLineFaults(ToolTest):
             self.expect_fault(command, 'absent.smoothed', 'old.smoothed', says=('absent.smoothed: cannot be opened',))
             self.expect_fault(command, 'empty.smoothed', 'old.smoothed', says=('empty.smoothed: has no points',))
             self.expect_fault(command, 'folder.smoothed', 'old.smoothed', says=('is a folder',))
-        for name in ('empty.csv', 'empty.gpx', 'empty.geojson', 'empty.bag', 'empty.json'):
+        for name in ('empty.csv', 'empty.gpx', 'empty.geojson', 'empty.json'):
             self.write(name, '')
-            self.expect_fault('convert', name, 'old.smoothed', says=(name,))
+            self.expect_fault('convert', name, 'old.smoothed', says=(name + ': has no points',))
+        self.write('empty.bag', '')
+        for command in ('convert', 'record'):
+            self.expect_fault(command, 'empty.bag', 'old.smoothed', says=('empty.bag: not a readable bag: it is empty',))
 
     def test_a_truncated_file(self):
         text = self.read('good.smoothed')
@@ -56,7 +62,7 @@ class NavigationLineFaults(ToolTest):
         for share in (0.001, 0.5, 0.99):
             with open(self.path('in.bag'), 'r+b') as file:
                 file.truncate(int(size * share))
-            self.expect_fault('record', 'in.bag', 'old.smoothed', says=('in.bag',))
+            self.expect_fault('record', 'in.bag', 'old.smoothed', says=('in.bag: not a readable bag: it was cut off',))
 
     def test_not_a_number(self):
         self.write('nan.smoothed', '{"x": 1.0, "y": 2.0}\n{"x": NaN, "y": 2.0}\n')
@@ -114,10 +120,31 @@ class NavigationLineFaults(ToolTest):
             self.expect_fault('reverse', 'good.smoothed', target, says=('cannot write ' + target, why))
         self.expect_fault('convert', 'good.smoothed', '/proc/line.bag', says=('cannot write /proc/line.bag',))
 
+    def test_no_permission(self):
+        options = other_user.options(self)
+        self.record('in.bag', drive('/pose', odometry))
+        os.chmod(self.path('old.smoothed'), 0o444)
+        for command in (('record', 'in.bag'), ('smooth', 'good.smoothed'), ('convert', 'good.smoothed'),
+                        ('offset', 'good.smoothed', '--distance', '3.5')):
+            for target in ('old.smoothed', 'new.smoothed', 'new.bag'):
+                if target == 'new.smoothed':
+                    os.chmod(self.folder, 0o555)
+                self.expect_fault(*command, target, says=('cannot write %s: Permission denied' % target,), **options)
+            os.chmod(self.folder, 0o755)
+        os.chmod(self.path('good.smoothed'), 0)
+        for command in (('reverse', 'good.smoothed', 'old.csv'), ('publish', 'good.smoothed')):
+            os.chmod(self.folder, 0o777)
+            self.expect_fault(*command, says=('good.smoothed: cannot be opened: Permission denied',), **options)
+        os.chmod(self.path('in.bag'), 0)
+        self.expect_fault('record', 'in.bag', 'new.smoothed', says=('in.bag: not a readable bag: Permission denied',), **options)
+
     def test_a_full_disk(self):
         for form in ('smoothed', 'one-line', 'csv'):
             self.expect_fault('convert', 'good.smoothed', '/dev/full', '--to', form,
                               says=('cannot write /dev/full', 'No space left on device'))
+        # A bag can't be written there, and must not take its place.
+        self.expect_fault('convert', 'good.smoothed', '/dev/full', '--to', 'bag', says=('cannot write /dev/full', 'device'))
+        self.assertTrue(stat.S_ISCHR(os.stat('/dev/full').st_mode))
 
     def test_a_full_disk_of_its_own(self):
         os.mkdir(self.path('disk'))
@@ -135,7 +162,21 @@ class NavigationLineFaults(ToolTest):
     def test_a_bound_that_cannot_be_held(self):
         points = straight(100.0)
         self.write('step.smoothed', smoothed(points[:100] + [(x, y + 2.0) for x, y in points[100:]]))
+        run = self.run_tool('smooth', 'step.smoothed', 'old.smoothed')
         self.expect_fault('smooth', 'step.smoothed', 'old.smoothed', says=('cannot be held at s = ',))
+        advice = re.search(r'; (--bound [0-9.]+ --follow [0-9.]+) would do\n$', run.stderr)
+        self.assertTrue(advice, run.stderr)
+        self.expect('smooth', 'step.smoothed', 'new.smoothed', *advice.group(1).split())
+        self.write('arc.smoothed', smoothed([way(step) for step in range(300)]))
+        self.expect_fault('smooth', 'arc.smoothed', 'old.smoothed', '--max-curvature', '0.001',
+                          says=('cannot be held at s = ', 'would have to bend by 0.01 1/m', 'nor is any bound'))
+
+    def test_an_output_that_cannot_be_written_is_refused_before_the_work(self):
+        self.write('bad.smoothed', 'no line\n')
+        for command in (('record', 'bad.smoothed'), ('smooth', 'bad.smoothed'), ('close', 'bad.smoothed'),
+                        ('convert', 'bad.smoothed'), ('join', 'bad.smoothed', 'bad.smoothed')):
+            self.expect_fault(*command, 'absent/line.smoothed', says=('cannot write absent/line.smoothed',))
+            self.expect_fault(*command, 'line.dat', says=('its format is not known',), code=2)
 
     def test_edits_that_cannot_be_done(self):
         self.expect_fault('close', 'good.smoothed', 'old.smoothed', says=('good.smoothed', 'the ends are 50.00 m apart'))

@@ -97,13 +97,18 @@ class ToolTest(unittest.TestCase):
                 bag.write(topic, message, stamp)
         return name
 
-    def command(self, *words):
-        return [roslib.packages.find_node('relative_map', 'navigation_line')[0]] + list(words)
+    @staticmethod
+    def tool():
+        return roslib.packages.find_node('relative_map', 'navigation_line')[0]
 
-    def run_tool(self, *words, master=False):
+    def command(self, *words):
+        return [self.tool()] + list(words)
+
+    def run_tool(self, *words, master=False, **options):
         environment = dict(os.environ) if master else dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:1')
-        return subprocess.run(self.command(*words), cwd=self.folder, env=environment, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=60)
+        options = dict({'env': environment}, **options)
+        return subprocess.run(self.command(*words), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True, timeout=60, **options)
 
     def expect(self, *words):
         """A run that must succeed; what it prints."""
@@ -119,10 +124,10 @@ class ToolTest(unittest.TestCase):
                     found[name] = file.read()
         return found
 
-    def expect_fault(self, *words, says=(), code=1):
+    def expect_fault(self, *words, says=(), code=1, **options):
         """A run that fails with one line that has all these texts, and leaves all files as they were."""
         before = self.contents()
-        run = self.run_tool(*words)
+        run = self.run_tool(*words, **options)
         self.assertEqual(run.returncode, code, run.stderr + run.stdout)
         self.assertEqual(run.stdout, '')
         self.assertEqual(run.stderr.count('\n'), 1, run.stderr)

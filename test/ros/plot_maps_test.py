@@ -4,7 +4,9 @@
 import math
 import os
 import subprocess
+import sys
 
+import numpy
 import roslib.packages
 import rosbag
 import rospy
@@ -13,7 +15,11 @@ from matplotlib import image
 from relative_map.msg import FusionState, MapMsg, MapStatus
 from std_msgs.msg import String
 
+import vehicle_messages
 from replay_support import START, ReplayTest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '../../scripts'))
+import map_bag  # noqa: E402
 
 PICTURES = ('bird_view.png', 'curves.png', 'frames.png')
 # On white: lanes of priority 0 and 1, a curve, and where there was no map.
@@ -67,6 +73,34 @@ class PlotMaps(ReplayTest):
             self.assertGreater(self.count(picture, OTHER_LANE), 2000, picture)
         self.assertGreater(self.count('curves.png', LINE), 500)
         self.assertLess(self.count('curves.png', SHADE), 100)
+
+    def test_lanes_of_a_curve_have_no_gaps(self):
+        """Their boundaries go on where those of the stretch before end, outside and inside."""
+        def at(radius, way):
+            return radius * math.sin(way / 30.0), 30.0 - radius * math.cos(way / 30.0)
+
+        lines = [vehicle_messages.navigation_path(name, priority, [at(radius, 0.5 * i) for i in range(300)])
+                 for priority, (name, radius) in enumerate((('middle', 30.0), ('left', 26.5), ('right', 33.5)))]
+        entries = [('/navigation', vehicle_messages.navigation(*lines), START)]
+        for step in range(80):
+            stamp = START + rospy.Duration(0, 100000000) * step
+            localization = vehicle_messages.localization(stamp, *at(30.0, 10.0 + step))
+            localization.pose.heading = (10.0 + step) / 30.0
+            localization.pose.orientation.w = 0.0
+            entries.append(('/localization', localization, stamp))
+        self.record(entries=entries)
+        self.replay('in.bag', 'maps.bag')
+        with map_bag.open_bag(self.path('maps.bag')) as bag:
+            drive = map_bag.read_drive(bag, 'maps.bag', '/relative_map', 'flu', lambda share: None)
+        self.assertGreater(len(drive.stretches), 6)
+        for before, after in zip(drive.stretches, drive.stretches[1:]):
+            self.assertEqual(len(before), 3)
+            for old, new in zip(before, after):
+                for end, start in ((old.left, new.left), (old.right, new.right)):
+                    forward = (start[1] - start[0]) / numpy.hypot(*(start[1] - start[0]))
+                    overlap = float((end[-1] - start[0]) @ forward)
+                    self.assertGreater(overlap, 0.1)
+                    self.assertLess(overlap, 0.7)
 
     def test_other_topic_frames_and_format(self):
         self.write_maps(topic='/other/map')

@@ -42,14 +42,17 @@ def tick_times(count=TICKS, rate=10):
     return [START + rospy.Duration(0, 1000000000 // rate) * tick for tick in range(count)]
 
 
+def replay_tool():
+    return roslib.packages.find_node('relative_map', 'replay')[0]
+
+
 class Run:
     """A finished run of replay, without a master to ask."""
 
-    def __init__(self, words, folder):
-        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:1')
-        finished = subprocess.run([roslib.packages.find_node('relative_map', 'replay')[0]] + words, cwd=folder,
-                                  env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  universal_newlines=True, timeout=60)
+    def __init__(self, words, folder, **options):
+        options = dict({'env': dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:1')}, **options)
+        finished = subprocess.run([replay_tool()] + words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  universal_newlines=True, timeout=60, **options)
         self.code, self.output, self.errors = finished.returncode, finished.stdout, finished.stderr
 
 
@@ -57,6 +60,8 @@ class ReplayTest(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
+
+    tool = staticmethod(replay_tool)
 
     def path(self, name):
         return os.path.join(self.folder, name)

@@ -79,6 +79,21 @@ class Replay(ReplayTest):
         self.assertEqual(list(maps), tick_times(2 * TICKS - 1, 20))
         self.assertEqual([lane.speed_limit for lane in maps[START].whole().hdmap.lane], [13.0] * 3)
 
+    def test_the_lines_of_the_configuration_are_used(self):
+        for name, y in (('middle', 0.0), ('left', 3.5)):
+            self.write(name + '.smoothed', ''.join('{"x": %d, "y": %.1f}\n' % (x, y) for x in range(400)))
+        self.write('config.yaml', 'navigation_lines: [%s, %s]\n' % (self.path('middle.smoothed'), self.path('left.smoothed')))
+        self.record(entries=[entry for entry in drive() if entry[0] != '/navigation'])
+        self.replay('in.bag', 'out.bag', '--config', 'config.yaml')
+        for head in self.maps().values():
+            self.assertEqual(head.code, MapStatus.OK)
+        self.assertEqual([lane.id.split('/')[0] for lane in head.whole().hdmap.lane], ['left', 'middle'])
+        self.expect_contract()
+        # The bag's own take their place, as on the node.
+        self.record()
+        self.replay('in.bag', 'out.bag', '--config', 'config.yaml')
+        self.assertEqual(len(self.maps()[tick_times()[-1]].whole().hdmap.lane), 3)
+
     def test_the_urdf_is_used(self):
         self.record()
         self.write('truck.urdf', WIDE_TRUCK)

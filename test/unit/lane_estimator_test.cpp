@@ -224,12 +224,22 @@ TEST(LaneEstimator, WithoutPaintTheWidthGoesBackToWhatIsExpected) {
 }
 
 TEST(LaneEstimator, ALaneThatWidensToOneSideKeepsItsCenter) {
-  StraightDrive drive;
-  drive.drive(20);
-  for (int i = 0; i < 60; ++i) {
-    LaneMarkers markers = drive.paint();
-    markers.right.cubic.c0 -= 0.05 * i;                                   // up to 6.5 m of lane
-    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 0.15) << i;  // of 1.5 m, were it the middle
+  for (const double taper : {1.0 / 50.0, 1.0 / 20.0, 1.0 / 10.0}) {
+    for (const bool seen_aslant : {true, false}) {  // or only as wider from image to image
+      if (!seen_aslant && taper < 0.05) continue;   // too slow to tell the border from the lane
+      for (const double side : {1.0, -1.0}) {
+        StraightDrive drive;
+        drive.drive(20);
+        for (double outward = 0.0; outward < 3.0; outward += taper * kStep) {  // up to 6.5 m of lane
+          LaneMarkers markers = drive.paint();
+          Cubic& border = (side > 0.0 ? markers.left : markers.right).cubic;
+          border.c0 += side * outward;
+          if (seen_aslant) border.c1 += side * taper;
+          const double error = drive.error(drive.tick(markers), 10.0);
+          EXPECT_NEAR(error, 0.0, 0.15) << outward;  // of 1.5 m, were it the middle
+        }
+      }
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "relative_map/simulation/road.hpp"
+#include "relative_map/tools/editable_line.hpp"
 #include "support/lines.hpp"
 
 namespace relative_map::core {
@@ -37,9 +38,14 @@ LineHeader utm50() {
 
 TEST(LineCheck, GoodLinesHaveNoFault) {
   const Pose2 start({690000.0, 3118000.0}, 0.3);
-  for (const RecordedLine& line :
-       {demo_road(start).lane(0.0, 0.5), closed_road(start).lane(3.5, 1.0),
-        RoadShape(start).add_straight(9.0).add_arc(7.8, 0.2).add_straight(9.0).lane(0.0, 0.5)}) {
+  for (const RecordedLine& line : {demo_road(start).lane(0.0, 0.5), closed_road(start).lane(3.5, 1.0),
+                                   RoadShape(start)
+                                       .add_straight(9.0)
+                                       .add_clothoid(5.0, 0.2)
+                                       .add_arc(2.8, 0.2)
+                                       .add_clothoid(5.0, 0.0)
+                                       .add_straight(9.0)
+                                       .lane(0.0, 0.5)}) {
     const std::vector<LineFault> faults = faults_of(line, utm50());
     EXPECT_TRUE(faults.empty()) << faults[0].kind << ": " << faults[0].what;
   }
@@ -91,6 +97,55 @@ TEST(LineCheck, FindsACurveThatIsTooTight) {
   const LineFault fault = only_fault(recording(test::arc({}, 0.3, 15.0, 0.25)), "curvature");
   EXPECT_THAT(fault.what, testing::HasSubstr("0.3 1/m"));
   EXPECT_EQ(fault.count, 61u);
+}
+
+TEST(LineCheck, FindsACurvatureThatNoCarCanSteer) {
+  RoadShape road;
+  road.add_straight(50.0).add_arc(30.0, 0.06).add_straight(50.0);
+  const std::vector<LineFault> faults = faults_of(road.lane(0.0, 0.5));
+  ASSERT_EQ(faults.size(), 2u);  // where the arc begins, and where it ends
+  EXPECT_EQ(faults[0].kind, "curvature rate");
+  EXPECT_NEAR(faults[0].s, 50.0, 1.0);
+  EXPECT_NEAR(faults[1].s, 80.0, 1.0);
+  LineCheckParam quick;
+  quick.max_curvature_rate = 1.0;
+  EXPECT_TRUE(check_line(road.lane(0.0, 0.5), {}, quick).empty());
+}
+
+/// A lap whose curvature is `before` the seam, and `after` it; elsewhere it changes slowly.
+Polyline lap_with_seam(double before, double after) {
+  // Such a spiral is closed by a shift that is spread over the lap.
+  Polyline points;
+  const double turn = 2.0 * kPi, length = turn / (0.5 * (before + after));
+  Pose2 pose;
+  const int count = static_cast<int>(length / 0.5);
+  for (int i = 0; i < count; ++i) {
+    points.push_back(pose.position());
+    const double kappa = after + (before - after) * (i + 0.5) / count;
+    pose = test::along_arc(pose, kappa, length / count);
+  }
+  const Point2 gap = pose.position();
+  for (int i = 0; i < count; ++i) points[i] -= gap * i / count;
+  return points;
+}
+
+TEST(LineCheck, FindsAStepOfCurvatureAtTheSeamOfALap) {
+  const RecordedLine even = recording(lap_with_seam(0.04, 0.04));
+  ASSERT_TRUE(make_editable(even).closed());
+  EXPECT_TRUE(faults_of(even).empty());
+  const RecordedLine line = recording(lap_with_seam(0.08, 0.01));
+  ASSERT_TRUE(make_editable(line).closed());
+  const LineFault fault = only_fault(line, "curvature rate");
+  EXPECT_LT(std::min(fault.s, length_of(make_editable(line)) - fault.s), 1.0);
+}
+
+TEST(LineCheck, FindsAKinkAtTheSeamOfALap) {
+  Polyline points = test::circle(30.0, 377);
+  points[0] += Point2(0.25, 0.0);
+  const RecordedLine line = recording(points);
+  ASSERT_TRUE(make_editable(line).closed());
+  EXPECT_EQ(faults_of(line)[0].kind, "kink");
+  EXPECT_EQ(faults_of(line)[0].point, 0u);
 }
 
 TEST(LineCheck, FindsHeadingsFromElsewhere) {

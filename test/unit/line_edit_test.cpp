@@ -64,23 +64,6 @@ TEST(LineEdit, ResamplesByCurvature) {
   for (double s = 200.0; s < 249.0; s += 1.0) EXPECT_LT(spacing_at(s), 0.11) << s;
 }
 
-TEST(LineEdit, TheParallelOfACircleIsACircle) {
-  for (double distance : {3.5, -3.5}) {
-    const EditableLine line = offset(lap(20.0, 400), distance);  // counter-clockwise: left is inward
-    EXPECT_TRUE(line.closed());
-    for (const Point2& point : line.points) {
-      EXPECT_NEAR((point + line.origin).norm(), 20.0 - distance, 1e-6);
-    }
-    for (const PathPoint& point : path_of(line)) EXPECT_NEAR(point.kappa, 1.0 / (20.0 - distance), 1e-6);
-  }
-}
-
-TEST(LineEdit, AParallelThatWouldFoldIsRefusedWithItsPlace) {
-  const EditableLine line = editable(test::arc({}, 0.3, 9.0, 0.25));
-  EXPECT_THAT(fault_of([&] { offset(line, 3.5); }), HasSubstr("the curve's radius is 3.33 m"));
-  EXPECT_EQ(fault_of([&] { offset(line, -3.5); }), "");
-}
-
 TEST(LineEdit, ClosesALapThatOverlapsOrFallsShort) {
   for (double lap_share : {0.97, 1.0, 1.1}) {
     SCOPED_TRACE(lap_share);

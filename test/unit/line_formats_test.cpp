@@ -209,7 +209,7 @@ TEST_F(LineFormats, BrokenXmlAndJsonAreNamed) {
   const auto gpx = [&](const std::string& content) {
     return fault_of([&] { read_line(write("a.gpx", content), LineFormat::kGpx); });
   };
-  EXPECT_THAT(gpx(""), HasSubstr("no whole XML file"));
+  EXPECT_THAT(gpx(""), HasSubstr("has no points"));
   EXPECT_THAT(gpx("<gpx><trk><trkseg><trkpt lat=\"1\" lon=\"2\"/>"), HasSubstr("no whole XML file"));
   EXPECT_THAT(gpx("<kml/>"), HasSubstr("no element 'gpx'"));
   EXPECT_THAT(gpx("<gpx/>"), HasSubstr("has 0 tracks and routes"));
@@ -220,7 +220,7 @@ TEST_F(LineFormats, BrokenXmlAndJsonAreNamed) {
   const auto geojson = [&](const std::string& content) {
     return fault_of([&] { read_line(write("a.geojson", content), LineFormat::kGeoJson); });
   };
-  EXPECT_THAT(geojson(""), HasSubstr("not valid JSON"));
+  EXPECT_THAT(geojson(""), HasSubstr("has no points"));
   EXPECT_THAT(geojson("{\"type\": \"LineString\", \"coordinates\": [[1, 2]"),
               HasSubstr("not valid JSON near byte"));
   EXPECT_THAT(geojson("{\"type\": \"Point\"}"), HasSubstr("has 0 LineStrings"));

@@ -131,21 +131,30 @@ TEST(Smoother, GeometryIsTheResultsOwnAndIsKeptOnIntake) {
   }
 }
 
-TEST(Smoother, NoiseThatIsTooMuchForTheBoundIsNamedWithItsPlace) {
-  const SmoothedLine result = smooth(noisy(demo_road().lane(0.0, 0.5), 0.3));
-  EXPECT_THAT(result.fault, HasSubstr("the bound of 0.25 m cannot be held at s = "));
-  SmootherParam wide;
-  wide.bound = 1.3;
-  wide.follow = 10.0;
-  const SmoothedLine better = smooth(noisy(demo_road().lane(0.0, 0.5), 0.3), wide);
-  EXPECT_EQ(better.fault, "");
-  EXPECT_LT(better.greatest_dkappa, 0.003);
+TEST(Smoother, NoiseThatIsTooMuchForTheBoundIsNamedWithItsPlaceAndWhatWouldDo) {
+  for (double noise_level : {0.15, 0.3, 1.0}) {
+    SCOPED_TRACE(noise_level);
+    const RecordedLine recorded = noisy(demo_road().lane(0.0, 0.5), noise_level);
+    EXPECT_THAT(smooth(recorded).fault, HasSubstr("the bound of 0.25 m cannot be held at s = "));
+    const auto param = find_feasible(make_editable(recorded), {}, 10.0, [](double) {});
+    ASSERT_TRUE(param);
+    EXPECT_GT(param->bound, 0.25);
+    EXPECT_LT(param->bound, 6.0 * noise_level);
+    const SmoothedLine better = smooth(recorded, *param);
+    EXPECT_EQ(better.fault, "");
+    EXPECT_LT(better.greatest_dkappa, 0.01 * noise_level);
+  }
 }
 
 TEST(Smoother, ARecordingThatNoVehicleCanFollowIsRefused) {
   RecordedLine step = test::recording(test::straight({}, 100.0, 0.5));
   for (std::size_t i = 100; i < step.points.size(); ++i) step.points[i].y += 2.0;
   EXPECT_THAT(smooth(step).fault, HasSubstr("cannot be held at s = "));
+  const auto param = find_feasible(make_editable(step), {}, 10.0, [](double) {});
+  ASSERT_TRUE(param);
+  EXPECT_EQ(smooth(step, *param).fault, "");
+  EXPECT_LT(param->bound, 1.5);
+  EXPECT_FALSE(find_feasible(make_editable(step), {}, 0.3, [](double) {}));
 }
 
 TEST(Smoother, SparsePointsAndHeightsGoAlong) {

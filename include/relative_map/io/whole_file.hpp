@@ -10,6 +10,13 @@ namespace relative_map::core {
 /// is then untouched.
 void write_whole_file(const std::string& path, const std::string& content);
 
+/// Throws as write_whole_file() would if nothing could be written to `path`, and writes nothing: to be asked
+/// before long work.
+void expect_writable(const std::string& path);
+
+/// Whether a device or pipe is at `path`.
+bool is_device(const std::string& path);
+
 /// A name beside `path` for what will be renamed to it, that no other process takes.
 std::string temporary_name(const std::string& path);
 

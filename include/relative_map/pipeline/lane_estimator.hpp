@@ -17,11 +17,13 @@ namespace relative_map::core {
 
 /// Estimates where the vehicle is beside its line, from odometry, localization and paint.
 ///
-/// A Kalman filter over the vehicle's true pose, localization's bias, the half widths of the lane and the
-/// offset of the lane from the line along it (OffsetProfile). Odometry moves the pose. Localization measures
-/// pose plus bias: what is white in it averages out, and what stays becomes bias as soon as paint tells the
-/// two apart. Paint measures the distance of its points from the line less the offset and the half width. On
-/// a straight that says nothing about the way along the line; where the line bends, it does.
+/// A Kalman filter over the vehicle's true pose, localization's bias, the yaw rate's bias, the direction that
+/// the camera is off by, the half widths of the lane and the offset of the lane from the line along it
+/// (OffsetProfile). Odometry moves the pose. Localization measures pose plus bias: what is white in it
+/// averages out, and what stays becomes bias as soon as paint tells the two apart. Paint measures the
+/// distance of its points from the line less the offset and the half width. On a straight that says nothing
+/// about the way along the line; where the line bends, it does. A camera that looks aside shows paint that
+/// the vehicle never comes nearer to.
 class LaneEstimator {
  public:
   /// Odometry up to `localized`, and what localization says there.
@@ -63,7 +65,19 @@ class LaneEstimator {
   FusionState state(const LineProjection& projection, double heading) const;
 
  private:
-  enum Index { kX, kY, kHeading, kBiasX, kBiasY, kBiasHeading, kLeft, kRight, kFirstKnot };
+  enum Index {
+    kTurnBias,
+    kX,
+    kY,
+    kHeading,
+    kBiasX,
+    kBiasY,
+    kBiasHeading,
+    kLeft,
+    kRight,
+    kCameraYaw,
+    kFirstKnot
+  };
   static constexpr int kStates = kFirstKnot + OffsetProfile::kKnots;
   using Filter = KalmanFilter<kStates>;
   template <int Rows>
@@ -122,8 +136,11 @@ class LaneEstimator {
   std::optional<Measurement> measure(const PaintSamples& paint, Index side, const NavigationLine& line,
                                      std::size_t vertex) const;
   bool fits(const Measurement& measurement) const;
+  bool is_opening(const std::array<SeenSide, 2>& seen) const;
   double mean_stddev(const Measurement& measurement) const;
   void measure_again(SeenSide& one, const NavigationLine& line, const LineProjection& projection) const;
+  std::optional<PaintSamples> credible(const std::optional<PaintSamples>& paint, const NavigationLine& line,
+                                       std::size_t vertex) const;
   /// The sides, the surer one first.
   std::array<SeenSide, 2> assign(const SeenSides& sides, const NavigationLine& line,
                                  const LineProjection& projection) const;

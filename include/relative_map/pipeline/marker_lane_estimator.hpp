@@ -13,7 +13,8 @@
 namespace relative_map::core {
 
 /// Estimates the lane ahead from paint alone: a Kalman filter over a clothoid in the body frame (Dickmanns
-/// and Mysliwetz 1992) and the half widths. Odometry carries it on where no paint is seen.
+/// and Mysliwetz 1992), the half widths, the yaw rate's bias and the direction that the camera is off by.
+/// Odometry carries it on where no paint is seen.
 class MarkerLaneEstimator {
  public:
   void move(const VehicleState& localized);
@@ -34,8 +35,8 @@ class MarkerLaneEstimator {
   Estimate right_half_width() const { return {filter_.state()[kRight], filter_.stddev(kRight)}; }
 
  private:
-  enum Index { kOffset, kSlope, kCurvature, kCurvatureRate, kLeft, kRight };
-  static constexpr int kStates = 6;
+  enum Index { kOffset, kSlope, kCurvature, kCurvatureRate, kLeft, kRight, kTurnBias, kCameraYaw };
+  static constexpr int kStates = 8;
   using Filter = KalmanFilter<kStates>;
   struct Measurement {
     Eigen::Matrix<double, kPaintSamples, 1> innovation;

@@ -9,8 +9,8 @@ namespace relative_map::core {
 /// as a driver sways, and alike over tens of metres.
 class OffsetProfile {
  public:
-  static constexpr int kKnots = 10;
-  static constexpr double kSpacing = 10.0;  ///< [m] between knots
+  static constexpr int kKnots = 8;
+  static constexpr double kSpacing = 12.0;  ///< [m] between knots
   using Knots = Eigen::Matrix<double, kKnots, 1>;
   using Covariance = Eigen::Matrix<double, kKnots, kKnots>;
 

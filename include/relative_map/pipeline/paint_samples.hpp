@@ -20,6 +20,8 @@ struct PaintSamples {
   Eigen::Matrix<double, kPaintSamples, kPaintSamples>
       covariance;               ///< [m^2] of the points, square to the paint
   double from = 0.0, to = 0.0;  ///< [m] x of the first and the last one
+  bool straight = false;        ///< the camera tells of no curvature at all
+  double quality = 1.0;
 };
 
 /// The paint of one image as seen from the body now; none: not seen, or of no use.
@@ -33,6 +35,9 @@ struct SeenSides {
 /// seen from the body now. A marker's error is that of its coefficients, so it grows with the distance, and
 /// the points share it.
 PaintSamples sample_paint(const LaneMarker& marker, const Pose2& base_from_sensor);
+
+/// Of `straight` paint, what counts where the lane bends: its first few metres.
+PaintSamples near_part(const PaintSamples& straight);
 
 /// Why a marker does not count; none: it does.
 std::optional<std::string> fault_of(const LaneMarker& marker, const NavigationLaneParam& param);

@@ -17,6 +17,8 @@ namespace relative_map {
 
 /// The files that the parameter names: a list of texts, or one text.
 std::vector<std::string> line_files(const XmlRpc::XmlRpcValue& parameter);
+/// The same from a YAML file of parameters; none if it does not name any.
+std::vector<std::string> line_files(const std::string& yaml_file);
 
 /// Reads files of any format (as .smoothed where the extension does not tell), with priorities in their
 /// order. They must be of one frame and projection, as far as they say; without a frame in any of them it is

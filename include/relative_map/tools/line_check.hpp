@@ -11,6 +11,8 @@ namespace relative_map::core {
 struct LineCheckParam {
   double max_gap = 5.0;         ///< [m] between points
   double max_curvature = 0.25;  ///< [1/m] that the vehicle can drive
+  /// [1/(m s)] that its steering can change the curvature by: a car's wheels, by 50 degrees a second
+  double max_curvature_rate = 0.3;
 };
 
 /// Something that makes a line unfit to be driven on, or says that it is not what it seems.

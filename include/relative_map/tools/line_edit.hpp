@@ -23,8 +23,9 @@ std::vector<CurvatureSpacing> default_curvature_spacing();
 /// kept.
 EditableLine resample_by_curvature(const EditableLine& line, const std::vector<CurvatureSpacing>& steps);
 
-/// The parallel at `distance` [m], left positive. Throws where the curve's centre is nearer than that: the
-/// parallel would fold there.
+/// The parallel at `distance` [m], left positive. Throws where the curve's centre is nearer than that, since
+/// the parallel would fold there, and where the line comes so near to itself that the parallel would cross
+/// itself and the line does not.
 EditableLine offset(const EditableLine& line, double distance);
 
 /// A lap of a line that comes back to its start: what goes on beyond it is left out, a gap of up to

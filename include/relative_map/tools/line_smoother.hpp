@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "relative_map/tools/editable_line.hpp"
@@ -23,7 +24,7 @@ struct SmoothedLine {
   double kappa_s = 0.0;
   double greatest_dkappa = 0.0;  ///< [1/m^2]
   double dkappa_s = 0.0;
-  std::string fault;  ///< a sentence if the result can't be used: it says where, and what might help
+  std::string fault;  ///< a sentence if the result can't be used: it says where
 };
 
 /// The line of least curvature change, the integral of dkappa^2, that stays within `bound` of the recorded
@@ -32,5 +33,10 @@ struct SmoothedLine {
 /// called with the share that is done, [0, 1].
 SmoothedLine smooth_line(const EditableLine& recorded, const SmootherParam& param,
                          const std::function<void(double)>& progress);
+
+/// Where smooth_line() has a fault: a bound and a `follow` with which it has none, tried; none: even with
+/// `max_bound` [m] it has one.
+std::optional<SmootherParam> find_feasible(const EditableLine& recorded, const SmootherParam& param,
+                                           double max_bound, const std::function<void(double)>& progress);
 
 }  // namespace relative_map::core
