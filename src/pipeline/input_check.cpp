@@ -86,7 +86,7 @@ void settle_direction(Checked<Localization>& checked) {
   const double yaw = yaw_of(input.map_from_body);
   const double difference = angle_difference(input.heading, yaw);
   if (std::abs(difference) < kDirectionTolerance) return;
-  if (input.heading == 0.0 && !is_identity(input.map_from_body)) {
+  if (input.heading == 0.0) {
     checked.remarks.push_back(
         "localization: pose.heading is 0 and disagrees with pose.orientation, which is used: "
         "set a heading that is not filled to NaN");

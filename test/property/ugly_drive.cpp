@@ -182,7 +182,7 @@ PipelineConfig ugly_config(Random& random) {
   }
 }
 
-void UglyDrive::change_lines(RelativeMapPipeline& pipeline) {
+void UglyDrive::change_lines() {
   lines_.clear();
   const int count = random_.integer(1, 5);
   for (int i = 0; i < count; ++i) {
@@ -198,7 +198,6 @@ void UglyDrive::change_lines(RelativeMapPipeline& pipeline) {
     beside.name = "beside";
     lines_.push_back(beside);
   }
-  pipeline.set_navigation_lines(prepare_navigation_lines({"map", lines_}, intake_));
 }
 
 void UglyDrive::put_beside_a_line() {
@@ -240,19 +239,35 @@ Localization UglyDrive::localization() {
   return localization;
 }
 
-void UglyDrive::step(RelativeMapPipeline& pipeline) {
-  if (lines_.empty() || random_.chance(0.08)) change_lines(pipeline);
+UglyInputs UglyDrive::next() {
+  UglyInputs inputs;
+  inputs.intake = intake_;
+  if (lines_.empty() || random_.chance(0.08)) {
+    change_lines();
+    inputs.lines = lines_;
+  }
   if (random_.chance(0.1)) {
-    const PipelineConfig config = ugly_config(random_);
-    intake_.stitch_closed_lines = config.enable_cyclic_rerouting;
+    inputs.config = ugly_config(random_);
+    intake_.stitch_closed_lines = inputs.config->enable_cyclic_rerouting;
     intake_.lane_half_width =
-        std::min(config.map_param.default_left_width, config.map_param.default_right_width);
-    pipeline.set_config(std::make_shared<PipelineConfig>(config));
+        std::min(inputs.config->map_param.default_left_width, inputs.config->map_param.default_right_width);
   }
   move_vehicle();
-  if (random_.chance(0.9)) pipeline.set_localization(localization());
-  if (random_.chance(0.5)) pipeline.set_chassis({now_, spoilt(random_, speed_, 0.1)});
-  if (random_.chance(0.6)) pipeline.set_lane_markers(ugly_markers(random_, now_));
+  if (random_.chance(0.9)) inputs.localization = localization();
+  if (random_.chance(0.5)) inputs.chassis = Chassis{now_, spoilt(random_, speed_, 0.1)};
+  if (random_.chance(0.6)) inputs.markers = ugly_markers(random_, now_);
+  return inputs;
+}
+
+void UglyDrive::step(RelativeMapPipeline& pipeline) {
+  const UglyInputs inputs = next();
+  if (inputs.lines) {
+    pipeline.set_navigation_lines(prepare_navigation_lines({"map", *inputs.lines}, inputs.intake));
+  }
+  if (inputs.config) pipeline.set_config(std::make_shared<PipelineConfig>(*inputs.config));
+  if (inputs.localization) pipeline.set_localization(*inputs.localization);
+  if (inputs.chassis) pipeline.set_chassis(*inputs.chassis);
+  if (inputs.markers) pipeline.set_lane_markers(*inputs.markers);
 }
 
 }  // namespace relative_map::core::test

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "random_scene.hpp"
@@ -19,16 +20,27 @@ LaneMarkers ugly_markers(Random& random, Time now);
 /// A configuration that passes validation, and nothing else.
 PipelineConfig ugly_config(Random& random);
 
+/// What comes in between two ticks; none: nothing of it.
+struct UglyInputs {
+  std::optional<std::vector<RecordedLine>> lines;
+  IntakeParam intake;  ///< of the lines
+  std::optional<PipelineConfig> config;
+  std::optional<Localization> localization;
+  std::optional<Chassis> chassis;
+  std::optional<LaneMarkers> markers;
+};
+
 class UglyDrive {
  public:
   explicit UglyDrive(std::uint64_t seed) : random_(seed) {}
 
   /// Time goes on, stands or leaps; lines and configuration change now and then.
+  UglyInputs next();
   void step(RelativeMapPipeline& pipeline);
   Time now() const { return now_; }
 
  private:
-  void change_lines(RelativeMapPipeline& pipeline);
+  void change_lines();
   void move_vehicle();
   void put_beside_a_line();
   Localization localization();

@@ -3,6 +3,7 @@
 
 import math
 import os
+import random
 import subprocess
 import tempfile
 import time
@@ -30,6 +31,8 @@ class World:
         self.s, self.l = 50.0, 0.2
         self.localizes, self.sees = True, False
         self.spoil = lambda estimate: None  # what is done to each localization before it is sent
+        self.spoil_markers = lambda markers: None
+        self.spoil_chassis = lambda chassis: None
         self.truth = {}  # stamp [ns] to (s, l)
         self.clock = rospy.Publisher('/clock', Clock, queue_size=1)
         self.navigation = rospy.Publisher('navigation', drive.NavigationInfo, queue_size=1, latch=True)
@@ -72,6 +75,7 @@ class World:
         self.localization.publish(message)
         chassis = Chassis(speed_mps=SPEED, gear_location=Chassis.GEAR_DRIVE)
         chassis.header.stamp = message.header.stamp
+        self.spoil_chassis(chassis)
         self.chassis.publish(chassis)
 
     def _publish_markers(self):
@@ -82,6 +86,7 @@ class World:
             marker.quality = 0.9
             marker.c0_position = side * 1.75 - self.l
             marker.view_range = 50.0
+        self.spoil_markers(message)
         self.markers.publish(message)
 
 
@@ -179,6 +184,100 @@ class BadDayTest(unittest.TestCase):
         self._spoil_navigation()
         self._stop_the_clock()
         self._check_contract()
+
+    def test_days_of_chance(self):
+        """Several things go wrong at once, by seeded chance."""
+        self.assert_well_again('at the start')
+        for seed in (1, 2):
+            chance = random.Random(seed)
+            for round_ in range(8):
+                what = 'seed %d, round %d: ' % (seed, round_)
+                faults = chance.sample(self._faults(chance), chance.randint(1, 4))
+                what += ', '.join(fault.__name__ for fault in faults)
+                for fault in faults:
+                    fault()
+                self.assert_all_right_or_empty(self.maps_of(chance.uniform(0.3, 1.2)), what)
+                self._mend()
+                self.assert_well_again('after ' + what)
+        self._check_contract()
+
+    def _faults(self, chance):
+        """What can go wrong; each of them lasts until it is mended, or happens once."""
+        world = self.world
+
+        def no_localization():
+            world.localizes = False
+
+        def localization_publisher_dies():
+            world.close_localization()
+            world.open_localization()
+
+        def camera_sees():
+            world.sees = True
+
+        def camera_publisher_dies():
+            world.markers.unregister()
+            world.markers = rospy.Publisher('perception/lane_markers', LaneMarkers, queue_size=10)
+
+        def camera_sees_wrong():
+            world.sees = True
+            field, value = chance.choice((('c0_position', drive.NAN), ('c0_position', 20.0), ('c0_position', -world.l),
+                                          ('view_range', -5.0), ('quality', 90.0), ('longitude_start', -1e9)))
+
+            def spoil(markers):
+                setattr(markers.left_lane_marker, field, value)
+                setattr(markers.right_lane_marker, field, value)
+            world.spoil_markers = spoil
+
+        def pose_jumps():
+            world.s = chance.uniform(60.0, 300.0)
+            world.l = chance.uniform(-0.5, 0.5)
+
+        def pose_is_off_the_route():
+            world.l = chance.choice((-60.0, 60.0))
+
+        def clock_leaps():
+            world.now += chance.choice((-1.0, 1.0)) * chance.uniform(0.5, 100.0)
+
+        def localization_is_spoilt():
+            def spoil(estimate):
+                estimate.pose.position.x = chance.choice((estimate.pose.position.x, drive.NAN, 1e30))
+                estimate.pose.linear_velocity.x = chance.choice((0.0, drive.NAN, 1000.0))
+                estimate.pose.angular_velocity_vrf.z = chance.choice((0.0, drive.NAN, 1e6))
+                estimate.child_frame_id = chance.choice(('base_link', 'base_link', 'no_such_link'))
+            world.spoil = spoil
+
+        def chassis_is_spoilt():
+            def spoil(chassis):
+                chassis.speed_mps = chance.choice((drive.NAN, 1000.0))
+            world.spoil_chassis = spoil
+
+        def lines_are_spoilt():
+            message = self._good_lines()
+            for path in message.navigation_path:
+                path.path.path_point[chance.randrange(len(path.path.path_point))].y = drive.NAN
+            world.navigation.publish(message)
+
+        def no_lines():
+            world.navigation.publish(drive.NavigationInfo(header=self._good_lines().header))
+
+        def lines_of_another_frame():
+            message = self._good_lines()
+            message.header.frame_id = 'utm'
+            world.navigation.publish(message)
+
+        return [no_localization, localization_publisher_dies, camera_sees, camera_publisher_dies, camera_sees_wrong,
+                pose_jumps, pose_is_off_the_route, clock_leaps, localization_is_spoilt, chassis_is_spoilt,
+                lines_are_spoilt, no_lines, lines_of_another_frame]
+
+    def _mend(self):
+        world = self.world
+        world.localizes, world.sees = True, False
+        world.spoil = world.spoil_markers = world.spoil_chassis = lambda message: None
+        if abs(world.l) > 1.0:
+            world.l = 0.2
+        world.navigation.publish(self._good_lines())
+        world.run(0.5)  # connections take their time
 
     def _spoil_localization(self):
         def position_is_nan(estimate):

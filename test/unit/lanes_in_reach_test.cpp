@@ -1,0 +1,35 @@
+#include "relative_map/pipeline/lanes_in_reach.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "support/vehicles.hpp"
+
+namespace relative_map::core {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(LanesInReach, AreTheBestWhereThereAreTooMany) {
+  std::vector<RecordedLine> recorded;
+  for (std::uint32_t i = 0; i < 20; ++i) {  // the later, the better
+    recorded.push_back(test::recording(test::straight(Pose2(Point2(0.0, 3.5 * i), 0.0), 100.0, 1.0),
+                                       std::to_string(i), 19 - i));
+  }
+  LanesInReach lanes;
+  lanes.set_lines(prepare_navigation_lines({"map", recorded}, IntakeParam()));
+  PipelineConfig config;
+  config.navigation_lane.max_distance_to_navigation_line = 100.0;
+  std::vector<std::string> remarks;
+  const auto found = lanes.track(test::vehicle_at(Pose2(Point2(50.0, 1.0), 0.0)), config, remarks);
+  const auto* tracked = std::get_if<std::vector<TrackedLine>>(&found);
+  ASSERT_TRUE(tracked);
+  EXPECT_EQ(tracked->size(), 16u);
+  for (const TrackedLine& line : *tracked) EXPECT_LT(line.line->priority, 16u) << line.line->id;
+  EXPECT_THAT(remarks, Contains(HasSubstr("20 lines are in reach: only the best 16 are used")));
+}
+
+}  // namespace
+}  // namespace relative_map::core
