@@ -96,6 +96,7 @@ PaintSamples near_part(const PaintSamples& straight) {
     samples.points[static_cast<std::size_t>(i)] = first + part * way;
     x[i] = part * way.norm();
   }
+  samples.to = samples.points.back().x();
   samples.covariance = covariance_at(x, kStraightCurvature, straight.quality);
   return samples;
 }
