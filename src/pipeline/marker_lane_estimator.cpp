@@ -62,6 +62,7 @@ void MarkerLaneEstimator::move(const VehicleState& to) {
       0.0, 0.0, 1.0, d,                                         //
       0.0, 0.0, 0.0, 1.0;
   f(kSlope, kTurnBias) = dt;
+  f(kOffset, kTurnBias) = 0.5 * d * dt;  // a turn leads the vehicle off the lane, too
   const double way = std::abs(d);
   q(kOffset, kOffset) = kSlipWalk * kSlipWalk * dt;
   q(kSlope, kSlope) = kHeadingWalk * kHeadingWalk * dt;
@@ -73,6 +74,7 @@ void MarkerLaneEstimator::move(const VehicleState& to) {
   q.block<2, 2>(kLeft, kLeft) = HalfWidthModel::noise(way);
   Filter::State turned = turned.Zero();
   turned[kSlope] = -turn;
+  turned[kOffset] = -0.5 * d * turn;
   filter_.predict(f, Filter::Covariance::Identity(), turned, q);
   seen_to_ -= d;
   if (seen_to_ < kNothingSeen && to.speed > kSlowest) follow_driver(to, dt);
