@@ -30,7 +30,6 @@ constexpr double kDriverSlope = 0.015;  // [rad] of it from the lane's, by the r
 constexpr double kDriverCurvature = 0.002;  // [1/m] likewise
 constexpr double kPatience = 1.2;     // [s] of paint that does not fit; outliers last for up to a second
 constexpr double kWidthMargin = 1.2;  // a lane so much wider or narrower than the limits is none
-constexpr double kBend = 0.002;       // [1/m] that the vehicle drives: paint along it can't be straight
 constexpr double kGate = 30.0;        // squared, in standard deviations
 
 }  // namespace
@@ -140,20 +139,16 @@ std::vector<std::string> MarkerLaneEstimator::correct(const SeenSides& sides, Ti
   std::vector<std::string> ignored;
   struct Seen {
     Index side;
-    PaintSamples paint;
+    const PaintSamples* paint;
     const char* name;
     double distance;
   };
-  const auto credible = [&](const PaintSamples& paint) {
-    const bool bends = last_ && std::abs(last_->yaw_rate) > kBend * std::abs(last_->speed);
-    return paint.straight && bends ? near_part(paint) : paint;
-  };
   std::vector<Seen> seen;
-  if (sides.left) seen.push_back({kLeft, credible(*sides.left), "left", 0.0});
-  if (sides.right) seen.push_back({kRight, credible(*sides.right), "right", 0.0});
+  if (sides.left) seen.push_back({kLeft, &*sides.left, "left", 0.0});
+  if (sides.right) seen.push_back({kRight, &*sides.right, "right", 0.0});
   const auto distance_of = [&](const Seen& one) {
-    const Measurement m = measure(one.paint, one.side);
-    return filter_.expect(m.jacobian, one.paint.covariance).squared_distance(m.innovation);
+    const Measurement m = measure(*one.paint, one.side);
+    return filter_.expect(m.jacobian, one.paint->covariance).squared_distance(m.innovation);
   };
   for (Seen& one : seen) one.distance = distance_of(one);
   if (seen.size() == 2 && seen[1].distance < seen[0].distance) std::swap(seen[0], seen[1]);
@@ -164,11 +159,11 @@ std::vector<std::string> MarkerLaneEstimator::correct(const SeenSides& sides, Ti
       ignored.push_back(std::string(one.name) + " is ignored: it is not where this lane's paint is expected");
       continue;
     }
-    const Measurement m = measure(one.paint, one.side);
-    filter_.correct(m.innovation, filter_.expect(m.jacobian, one.paint.covariance));
+    const Measurement m = measure(*one.paint, one.side);
+    filter_.correct(m.innovation, filter_.expect(m.jacobian, one.paint->covariance));
     if (!any) left_paint_ = right_paint_ = BoundaryType::kUnknown;
-    (one.side == kLeft ? left_paint_ : right_paint_) = one.paint.type;
-    seen_to_ = any ? std::max(seen_to_, one.paint.to) : one.paint.to;
+    (one.side == kLeft ? left_paint_ : right_paint_) = one.paint->type;
+    seen_to_ = any ? std::max(seen_to_, one.paint->to) : one.paint->to;
     any = true;
   }
   if (any) last_paint_ = stamp;
