@@ -92,7 +92,8 @@ void PoseCollector::add(const geometry_msgs::PoseStamped& message, const ros::Ti
 
 template <>
 void PoseCollector::add(const sensor_msgs::NavSatFix& message, const ros::Time& received) {
-  const bool fix = message.status.status >= sensor_msgs::NavSatStatus::STATUS_FIX &&
+  const bool unset = message.latitude == 0.0 && message.longitude == 0.0;  // far out at sea
+  const bool fix = message.status.status >= sensor_msgs::NavSatStatus::STATUS_FIX && !unset &&
                    std::isfinite(message.latitude) && std::isfinite(message.longitude);
   if (!fix) {
     ++without_fix_;

@@ -48,7 +48,7 @@ class PoseCollector {
   // Of NavSatFix:
   bool geographic() const { return !places_.empty(); }
   const std::vector<core::GeoPoint>& places() const { return places_; }
-  /// Left out: without a fix, or with a position that is not finite.
+  /// Left out: without a fix, or with a position that is not finite or was never set.
   std::size_t without_fix() const { return without_fix_; }
   /// The receiver's frame if it is another one than the base frame; else empty.
   const std::string& antenna() const { return antenna_; }

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Quaternion
 from tf2_msgs.msg import TFMessage
 
 import vehicle_messages
-from navigation_line_support import RATE, START, ToolTest, X, Y, drive, fix, localization, odometry
+from navigation_line_support import RATE, START, ToolTest, X, Y, drive, fix, fixes, localization, odometry
 
 ARM = 2.0  # [m] that the measuring unit lies ahead of base_link
 
@@ -109,6 +109,14 @@ class NavigationLineRecord(ToolTest):
         for _, message, _ in entries:
             message.header.frame_id = 'gps_link'
         self.assertIn("the line is where the receiver 'gps_link' was, and not 'base_link'", self.record_line(entries))
+
+    def test_fixes_that_were_never_set_are_none(self):
+        entries = list(fixes())
+        for _, message, _ in entries[:20]:  # says that it is a fix, and is not
+            message.latitude = message.longitude = 0.0
+        text = self.record_line(entries)
+        self.assertIn('20 without a fix', text)
+        self.assertIn('UTM zone 32N', text)
 
     def parked(self, noise, seconds=60):
         draw = random.Random(5)
