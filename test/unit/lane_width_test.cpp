@@ -289,5 +289,31 @@ TEST(Borders, OfLanesThatChangeSidesAreNotShared) {
   EXPECT_FALSE(find_borders({lane("left", uturn), lane("right", beside)}, kMaxHalfWidth).left_is_shared[1]);
 }
 
+TEST(NarrowLanes, KeepTheOneThatIsToBeKeptOnEitherSide) {
+  for (const char* kept : {"left", "right"}) {
+    for (const std::uint32_t left_priority : {0u, 2u}) {
+      std::vector<LanePath> lanes = {straight_lane("left", 1.0, left_priority),
+                                     straight_lane("right", 0.0, 1)};
+      drop_narrow_lanes(lanes, kHalfWidth, kept);
+      EXPECT_EQ(ids_of(lanes), std::vector<std::string>{kept}) << left_priority;
+    }
+  }
+}
+
+TEST(NarrowLanes, AreNotThoseThatFollowOneAnother) {
+  std::vector<LanePath> lanes = {straight_lane("here", 0.0, 0, -2.0, 60.0),
+                                 straight_lane("there", 0.5, 1, 61.0, 150.0)};
+  EXPECT_TRUE(drop_narrow_lanes(lanes, kHalfWidth).empty());
+  EXPECT_EQ(lanes.size(), 2u);
+}
+
+TEST(Borders, ThatAreSharedLeaveEachLaneItsShareWhateverPaintSays) {
+  LanePath left = straight_lane("left", 3.5);
+  left.seen = SeenHalfWidths{{}, 3.3, 100.0};
+  const LaneBorders borders = find_borders({left, straight_lane("right", 0.0)}, kMaxHalfWidth);
+  ASSERT_TRUE(borders.left_is_shared[1]);
+  EXPECT_NEAR(borders.right[0][20].y(), 3.5 * 0.3, 1e-9);
+}
+
 }  // namespace
 }  // namespace relative_map::core
