@@ -12,6 +12,21 @@
 #include "relative_map/ros/message_check.hpp"
 
 namespace relative_map {
+namespace {
+
+constexpr const char* kUsage =
+    R"(Usage: rosrun relative_map map_monitor [relative_map:=TOPIC] [_base_frame:=FRAME]
+
+Watches the maps on `relative_map`: a line a second with lanes, points, source, lateral offset and remaining distance, or
+why there is no map, and each violation of the output contract. Runs until it is interrupted, and then prints the sums.
+
+  relative_map:=TOPIC   where the maps are
+  _base_frame:=FRAME    the body frame they should be in (base_link)
+
+Exit codes: 0 no violation, 1 some.
+)";
+
+}  // namespace
 
 class MapMonitor {
  public:
@@ -83,6 +98,10 @@ class MapMonitor {
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
+  if (argc == 2 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h")) {
+    std::fputs(relative_map::kUsage, stdout);
+    return 0;
+  }
   ros::init(argc, argv, "map_monitor", ros::init_options::AnonymousName);
   const relative_map::MapMonitor monitor{ros::NodeHandle(), ros::NodeHandle("~")};
   ros::spin();

@@ -13,7 +13,8 @@ namespace {
 using Remappings = std::map<std::string, std::string>;
 using Words = std::vector<std::string>;
 
-constexpr double kMaxBound = 10.0;  // [m]
+constexpr double kMaxBound = 10.0;   // [m]
+constexpr double kNotableGap = 5.0;  // [m]
 
 /// "would do" for what find_feasible() has found.
 std::string advice(const core::EditableLine& line, const core::SmootherParam& param) {
@@ -64,6 +65,12 @@ int run_smooth(const Words& words, const Remappings&) {
               result.deviation_s);
   std::printf("greatest curvature      %.5f 1/m at s = %.1f m\n", result.greatest_kappa, result.kappa_s);
   std::printf("greatest curvature rate %.5f 1/m^2 at s = %.1f m\n", result.greatest_dkappa, result.dkappa_s);
+  if (result.longest_gap > kNotableGap) {
+    std::printf(
+        "longest gap             %.2f m from s = %.1f m on: nothing is recorded there, and the line a "
+        "guess\n",
+        result.longest_gap, result.gap_s);
+  }
   return 0;
 }
 

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <exception>
+#include <string>
 #include <utility>
 
 #include "relative_map/ros/conversions.hpp"
@@ -22,6 +24,24 @@ namespace {
 constexpr core::Time kMaxLag = std::chrono::seconds(2);        // behind the clock that is caught up with
 constexpr core::Time kStandingTime = std::chrono::seconds(2);  // at the end of a line
 constexpr const char* kLocalMapFrame = "local_map";
+
+constexpr const char* kUsage =
+    R"(Usage: rosrun relative_map vehicle_simulator _navigation_lines:="FILE..." [_PARAMETER:=VALUE]...
+
+A car that drives along one of these lines (.smoothed files, from left to right), and publishes what a car with sensors
+does: navigation, localization, chassis, perception/lane_markers, its transforms, and where it truly is. As a whole, with
+the map and rviz: roslaunch relative_map demo.launch navigation_lines:="FILE..."
+
+  _drive_line:=N             index of the line that it follows, from 0 (the one in the middle)
+  _max_speed:=V              [m/s] on straights
+  _seed:=N                   of the sensors' noise: the same seed gives the same drive
+  _publish_navigation:=BOOL  false: another node publishes the lines (true)
+  _exit_at_end:=BOOL         true: the node ends when the car has come to the end of its line
+  _repeat:=BOOL              true: it starts again there
+
+What its sensors and lines may be wrong by is in config/simulator_errors.yaml, as private parameters; all is off unless
+that file is loaded. A parameter that is unknown or impossible keeps it from starting. Exit codes: 0 done, 1 not started.
+)";
 
 core::Time period_of(double rate) {
   return core::Time(std::llround(1e9 / rate));
@@ -240,6 +260,10 @@ void VehicleSimulator::publish_lane_markers(core::Time until) {
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
+  if (argc == 2 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h")) {
+    std::fputs(relative_map::kUsage, stdout);
+    return 0;
+  }
   ros::init(argc, argv, "vehicle_simulator");
   ros::NodeHandle nh, private_nh("~");
   try {

@@ -1,5 +1,6 @@
 #include "relative_map/pipeline/input_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -23,6 +24,7 @@ constexpr double kFarthestAside = 10.0;   // [m] of the own lane's paint; others
 constexpr double kSteepest = 5.0;         // [-]
 constexpr double kMaxBend = 0.5;          // [1/m] of c2
 constexpr double kMaxBendRate = 0.1;      // [1/m^2] of c3
+constexpr double kSurest = 1.001;         // a quality of 1, rounded
 constexpr double kNarrowest = 1.0;        // [m] from paint to paint; mirrored paint is told as that
 constexpr double kWidest = 10.0;          // [m] likewise
 
@@ -134,7 +136,7 @@ void check_marker(const char* name, double farthest_aside, LaneMarker& marker,
     double value, least, most;
   };
   const Number numbers[] = {
-      {"quality", marker.quality, 0.0, 1.0},
+      {"quality", marker.quality, 0.0, kSurest},
       {"c0_position", marker.cubic.c0, -farthest_aside, farthest_aside},
       {"c1_heading_angle", marker.cubic.c1, -kSteepest, kSteepest},
       {"c2_curvature", marker.cubic.c2, -kMaxBend, kMaxBend},
@@ -151,6 +153,7 @@ void check_marker(const char* name, double farthest_aside, LaneMarker& marker,
     marker.quality = 0.0;
     return;
   }
+  marker.quality = std::min(marker.quality, 1.0);
   if (marker.view_range > kFarthestSeen) {
     remarks.push_back(prefix(numbers[6]) + text(" m: taken as ", kFarthestSeen, " m"));
     marker.view_range = kFarthestSeen;

@@ -16,8 +16,8 @@ constexpr double kHeadingBias0 = 0.01;  // [rad]
 constexpr double kTurnBias0 = 0.003;    // [rad/s]
 constexpr double kCameraYaw0 = 0.005;   // [rad]
 // Of localization, white from message to message.
-constexpr double kPositionNoise = 0.03;   // [m]
-constexpr double kHeadingNoise = 0.0035;  // [rad]
+constexpr double kPositionNoise = 0.03;   // [m] at least
+constexpr double kHeadingNoise = 0.0035;  // [rad] at least
 // Random walks, by the root of the time [s].
 constexpr double kBiasWalk = 0.15;           // [m]
 constexpr double kHeadingBiasWalk = 0.0015;  // [rad]
@@ -33,6 +33,8 @@ constexpr double kRecording = 0.4;       // [m] of one line against another
 constexpr double kOtherWidth = 0.1;      // [m] of one lane against another
 constexpr double kMaxHeadingBias = 0.1;  // [rad] of localization: no estimate beyond it is one
 constexpr double kLongestGap = 1.0;      // [s] between poses that odometry bridges
+constexpr double kListenTime = 1.0;      // [s] over which localization's noise is measured
+constexpr double kLoudest = 1.0;         // [m] of it: more is a jump
 constexpr double kHoldTime = 1.0;        // [s] without paint until the estimate starts to decay
 constexpr double kForgetTime = 60.0;     // [s] without paint until nothing is left worth having
 constexpr double kBehind = 1.5;          // knots behind the vehicle
@@ -47,6 +49,8 @@ void LaneEstimator::start(const VehicleState& localized) {
     fresh.half_width_ = half_width_;
     fresh.given_up_ = given_up_;
     fresh.watch_ = watch_;
+    fresh.position_variance_ = position_variance_;
+    fresh.heading_variance_ = heading_variance_;
     return fresh;
   }();
   origin_ = localized.map_from_base.position();
@@ -81,6 +85,7 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
       (forgotten || gap || broken || has_jumped(*last_, localized) || localized.stamp <= last_->stamp)) {
     start(localized);
   }
+  if (last_) listen(localized);
   if (!last_ || !informed()) {  // nothing to tell bias from place by
     last_ = localized;
     return;
@@ -99,6 +104,19 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
         << " rad from where localization puts it: not believed";
     give_up(localized, why.str());
   }
+}
+
+/// How noisy localization is: what one pose is off by from where odometry goes from the one before.
+void LaneEstimator::listen(const VehicleState& localized) {
+  const double dt = to_seconds(localized.stamp - last_->stamp);
+  const Pose2 expected = carried_on(*last_, dt);
+  const double aside = (localized.map_from_base.position() - expected.position()).norm();
+  const double turned = angle_difference(localized.map_from_base.heading(), expected.heading());
+  if (!(dt > 0.0) || !(aside < kLoudest) || !(std::abs(turned) < kMaxHeadingBias)) return;
+  const double share = std::min(1.0, dt / kListenTime);
+  position_variance_ +=
+      share * (0.25 * aside * aside - position_variance_);  // of two poses, in two directions
+  heading_variance_ += share * (0.5 * turned * turned - heading_variance_);
 }
 
 /// Back to what localization says, and to the lane that is expected.
@@ -145,7 +163,8 @@ void LaneEstimator::follow_localization(const VehicleState& localized) {
     return {position.x() - x[kX] - x[kBiasX], position.y() - x[kY] - x[kBiasY],
             angle_difference(localized.map_from_base.heading(), x[kHeading] + x[kBiasHeading])};
   };
-  const Vector3 noise(kPositionNoise, kPositionNoise, kHeadingNoise);
+  const double position_noise = std::max(kPositionNoise, std::sqrt(position_variance_));
+  const Vector3 noise(position_noise, position_noise, std::max(kHeadingNoise, std::sqrt(heading_variance_)));
   const auto expect = [&] {  // pose plus bias
     Filter::Expected<3> expected;
     expected.cross = p.middleCols<3>(kX) + p.middleCols<3>(kBiasX);

@@ -55,6 +55,13 @@ bool LaneEstimator::is_opening(const std::array<SeenSide, 2>& seen) const {
   return apart > 0.0 && apart * apart > kOpeningGate * kOpeningGate * variance;
 }
 
+void LaneEstimator::doubt_motion() {
+  if (!informed()) return;
+  const Filter::State& x = filter_.state();
+  const double aside = std::cos(x[kHeading]) * x[kBiasY] - std::sin(x[kHeading]) * x[kBiasX];
+  if (std::abs(aside) < kMaxSurprise) reset();
+}
+
 std::string LaneEstimator::refusal_of(const SeenSide& side) {
   std::ostringstream reason;
   reason.precision(2);

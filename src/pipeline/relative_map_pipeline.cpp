@@ -34,7 +34,13 @@ bool RelativeMapPipeline::set_localization(const Localization& link,
     note({status->message});
     return true;
   }
+  const bool trusted = poses_.trusts_odometry();
   poses_.add(std::get<VehicleState>(state));
+  if (trusted && !poses_.trusts_odometry()) {
+    images_.clear();
+    estimator_.doubt_motion();
+    marker_estimator_.reset();
+  }
   images_.move(poses_.newest());
   estimator_.move(poses_.newest(), config_->lane_fusion);
   marker_estimator_.move(poses_.newest());
@@ -163,15 +169,17 @@ std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) 
   const std::optional<Chassis> chassis = fresh_chassis(now);
   if (chassis) {
     add_remarks(chassis_->remarks);
-    if (auto disagreement = speeds_disagree(localization_->input, *chassis))
-      add_remarks({std::move(*disagreement)});
+    auto disagreement = speeds_disagree(localization_->input, *chassis);
+    if (disagreement && poses_.trusts_speed()) add_remarks({std::move(*disagreement)});
   }
+  add_remarks(poses_.remarks());
   const bool markers_are_fresh =
       markers_ && to_seconds(now - markers_->stamp) <= config_->max_age.lane_markers;
   if (markers_are_fresh) add_remarks(marker_remarks_);
   auto state = make_vehicle_state(localization_->input, chassis);
   auto* vehicle = std::get_if<VehicleState>(&state);
-  if (vehicle && !std::isfinite(vehicle->speed)) vehicle->speed = poses_.newest().speed;
+  if (vehicle && !(std::isfinite(vehicle->speed) && poses_.trusts_speed()))
+    vehicle->speed = poses_.newest().speed;
   return state;
 }
 

@@ -4,17 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "line_ends.hpp"
+
 namespace relative_map::core {
 
 namespace {
 
 constexpr double kMinSpacing = 1e-3;    // [m] nearer points are one and the same
 constexpr double kMinLapLength = 30.0;  // [m] no vehicle drives a tighter circle
-constexpr double kMaxTurn = 0.8;  // [rad] between the ends of a lap; noise adds to the chords' directions
-
-double angle_between(const Point2& a, const Point2& b) {
-  return std::abs(std::atan2(cross(a, b), a.dot(b)));
-}
 
 void find_ends(EditableLine& line) {
   Polyline& points = line.points;
@@ -24,7 +21,9 @@ void find_ends(EditableLine& line) {
   const double spacing = std::max(first_chord.norm(), last_chord.norm());
   const Point2 gap = points[0] - points[last];
   const Point2 along = (first_chord.normalized() + last_chord.normalized()).normalized();
-  if (angle_between(first_chord, last_chord) > kMaxTurn || gap.norm() > 1.5 * spacing) return;
+  if (gap.norm() > 1.5 * spacing) return;
+  // Noise turns the chords, but not the ways that the ends lead as a whole.
+  if (angle_between(direction_at_start(points), direction_at_end(points)) > kMaxTurn) return;
   if (gap.norm() < 0.3 * spacing) {
     line.repeats_start = true;
     points.pop_back();

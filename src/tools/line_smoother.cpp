@@ -20,6 +20,7 @@ constexpr double kTolerance = 1e-4;      // [m] of the bound
 constexpr double kLongestSegment = 5.0;  // [m] a recording with longer ones says nothing between its points
 constexpr std::size_t kLookAround = 12;  // segments of the recording
 constexpr double kAstray = 20.0;         // times the bound
+constexpr double kRoomy = 0.9;           // of the bound
 constexpr double kFollowInNoise = 5.0;   // [m] that keeps curves from being cut where the bound is wide
 // Of the bound, softest first: so soft, it gives way before the line gets kinks. Where that is too much, it
 // is made to hold, as long as the vehicle can follow.
@@ -56,6 +57,25 @@ Polyline with_closing(const Polyline& points, Ends ends) {
   Polyline result = points;
   if (ends == Ends::kClosed) result.push_back(points.front());
   return result;
+}
+
+/// Between which of the recorded points nothing was recorded, and where on the result that begins.
+void find_gap(const EditableLine& recorded, const PathPoints& path, SmoothedLine& result) {
+  std::size_t start = 0;
+  const Polyline raw = with_closing(recorded.points, recorded.ends);
+  for (std::size_t i = 0; i + 1 < raw.size(); ++i) {
+    const double gap = (raw[i + 1] - raw[i]).norm();
+    if (gap <= result.longest_gap) continue;
+    result.longest_gap = gap;
+    start = i;
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const PathPoint& point : path) {
+    const double distance = (point.position - raw[start]).squaredNorm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    result.gap_s = point.s;
+  }
 }
 
 /// The farthest that recording and result lie apart.
@@ -111,8 +131,10 @@ std::string place(double s) {
   return text.str();
 }
 
-void measure(SmoothedLine& result, const Deviation& deviation, const SmootherParam& param) {
+void measure(const EditableLine& recorded, const Deviation& deviation, const SmootherParam& param,
+             SmoothedLine& result) {
   const PathPoints path = path_of(result.line);
+  find_gap(recorded, path, result);
   result.length = length_of(result.line);
   result.greatest_deviation = deviation.distance;
   result.deviation_s = path[deviation.point].s;
@@ -170,7 +192,7 @@ bool run_rounds(const EditableLine& recorded, const SmootherParam& param, double
   }
   result.line.points = std::move(reference);
   result.line.z = heights_of(recorded, result.line.points);
-  measure(result, deviation, param);
+  measure(recorded, deviation, param, result);
   return true;
 }
 
@@ -203,19 +225,20 @@ SmoothedLine smooth_line(const EditableLine& recorded, const SmootherParam& para
 
 std::optional<SmootherParam> find_feasible(const EditableLine& recorded, const SmootherParam& param,
                                            double max_bound, const std::function<void(double)>& progress) {
+  std::optional<SmootherParam> feasible;
   SmootherParam tried = param;
   tried.follow = kFollowInNoise;
-  const auto works = [&] { return smooth_line(recorded, tried, progress).fault.empty(); };
   for (double bound = param.bound; bound < max_bound; bound *= 2.0) {
     tried.bound = std::min(2.0 * bound, max_bound);
     const SmoothedLine wide = smooth_line(recorded, tried, progress);
     if (!wide.fault.empty()) continue;
-    // Between the one that is too narrow and this: what it has used of it.
-    const SmootherParam found = tried;
-    tried.bound = std::max(bound, std::ceil(20.0 * wide.greatest_deviation + 1.0) / 20.0);
-    return tried.bound < found.bound && works() ? tried : found;
+    feasible = tried;
+    // A bound that binds makes the line rough.
+    if (wide.greatest_deviation > kRoomy * tried.bound) continue;
+    tried.bound = std::ceil(20.0 * wide.greatest_deviation + 1.0) / 20.0;
+    return smooth_line(recorded, tried, progress).fault.empty() ? tried : feasible;
   }
-  return std::nullopt;
+  return feasible;
 }
 
 }  // namespace relative_map::core

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kWindow = 1.0;          // [s] before and after a pose, that its motion is taken from
 constexpr std::size_t kLeast = 2;        // poses before and after, where they come more slowly
+constexpr std::size_t kMost = 40;        // poses that are looked at, evenly, where there are more
 constexpr double kLongestWindow = 5.0;   // [s] before and after, of these
 constexpr double kSignificance = 5.0;    // standard deviations of a velocity that is no noise
 constexpr double kLeastWay = 1.0;        // [m] that motion leads: less is a receiver's drift
@@ -50,7 +51,8 @@ class Fitter {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
     double squares = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t step = 1 + (end - begin) / kMost;
+    for (std::size_t i = begin; i < end; i += step) {
       const double t = poses_[i].stamp - poses_[at].stamp;
       const Eigen::Vector3d powers(1.0, t, t * t);
       const Point2 offset = position(poses_[i]) - position(poses_[at]);

@@ -19,7 +19,9 @@ void drive_on_markers(const LaneMarkers& markers, PipelineConfig config = Pipeli
     if (i > 6) scene.see(test::lane_about({0.3}));
     const RelativeMap map = scene.at(Pose2(Point2(i, 0.0), 0.0));
     ASSERT_FALSE(testing::Test::HasFailure()) << "step " << i;
-    if (i > 9) EXPECT_EQ(map.status.code, StatusCode::kOk) << map.status.message;
+    if (i > 9) {
+      EXPECT_EQ(map.status.code, StatusCode::kOk) << map.status.message;
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What map_monitor prints, and its exit code."""
 
+import os
 import signal
 import subprocess
 import tempfile
@@ -65,6 +66,13 @@ class Monitor(unittest.TestCase):
         self.assertEqual(self.exit_code(), 1)
         self.assertEqual(self.text().count('CONTRACT VIOLATION'), 3)  # and no more: there may be thousands
         self.assertIn('header: 5', self.text())
+
+    def test_explains_itself_without_a_master(self):
+        for name in ('map_monitor', 'vehicle_simulator'):
+            run = subprocess.run([program('relative_map', name), '--help'], stdout=subprocess.PIPE, timeout=DEADLINE,
+                                 env=dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:1'), universal_newlines=True)
+            self.assertEqual(run.returncode, 0)
+            self.assertIn('Usage: rosrun relative_map ' + name, run.stdout)
 
     def test_survives_a_map_of_scraps(self):
         map = empty_map(1)

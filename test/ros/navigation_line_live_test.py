@@ -10,7 +10,9 @@ import rospy
 import rostest
 from nav_msgs.msg import Odometry
 from relative_map.msg import NavigationInfo
+from tf2_msgs.msg import TFMessage
 
+import vehicle_messages
 from navigation_line_support import ToolTest, odometry, smoothed, straight, way
 from node_support import wait_for
 
@@ -59,6 +61,40 @@ class NavigationLineLive(ToolTest):
         self.assertEqual(process.wait(20.0), 0, process.stdout.read())
         points = [json.loads(line) for line in self.read('line.smoothed').splitlines()][1:]
         self.assertGreater(len(points), 300)
+
+    def drive_imu(self, publisher):
+        """Poses of a link 2 m ahead of base_link, along x."""
+        start = rospy.Time.now()
+        for step in range(300):
+            message = odometry(start + rospy.Duration(step / 20.0), 100.0 + 0.5 * step, 50.0)
+            message.child_frame_id = 'imu_link'
+            message.pose.pose.orientation.w = 1.0
+            publisher.publish(message)
+            rospy.sleep(0.005)
+
+    def test_carries_poses_by_the_transforms_that_are_published(self):
+        transforms = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        self.addCleanup(transforms.unregister)
+        transforms.publish(TFMessage([vehicle_messages.static_transform('imu_link', 2.0, 0.5)]))
+        publisher = rospy.Publisher('imu_odometry', Odometry, queue_size=1000)
+        process = self.start('record', '--live', 'line.smoothed', '--topic', 'imu_odometry')
+        wait_for(lambda: publisher.get_num_connections() > 0 and transforms.get_num_connections() > 0, 'subscribers')
+        self.drive_imu(publisher)
+        rospy.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(20.0), 0, process.stdout.read())
+        points = [json.loads(line) for line in self.read('line.smoothed').splitlines()][1:]
+        self.assertAlmostEqual(points[0]['x'], 98.0, delta=1.5)
+        self.assertAlmostEqual(points[-1]['x'], 98.0 + 0.5 * 299, delta=1.5)
+
+    def test_a_missing_transform_is_said_while_it_records(self):
+        publisher = rospy.Publisher('gps_odometry', Odometry, queue_size=1000)
+        process = self.start('record', '--live', 'line.smoothed', '--topic', 'gps_odometry', '--base-frame', 'axle')
+        wait_for(lambda: publisher.get_num_connections() > 0, 'subscriber')
+        self.drive_imu(publisher)
+        self.assertEqual(process.wait(20.0), 1)
+        self.assertIn("there is no transform from that to 'axle'", process.stdout.read())
+        self.assertEqual(self.contents(), {})
 
     def test_nothing_to_record_is_said(self):
         run = self.run_tool('record', '--live', 'line.smoothed', '--topic', 'nobody', '--duration', '1', master=True)

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <random>
 
 #include "relative_map/simulation/accuracy_benchmark.hpp"
 #include "relative_map/simulation/recorded_drive.hpp"
@@ -79,6 +80,33 @@ TEST(FaultySensors, TheSpeedComesFromThePosesWhereNobodyTellsIt) {
     if (auto* pose = std::get_if<Localization>(&delivery.message)) pose->linear_velocity.setZero();
   };
   expect_good_maps(fault, 0.16, {"motorway", "urban", "drift-one-line", "perception-country"});
+}
+
+TEST(FaultySensors, AChassisThatReportsZeroOrTheWrongUnitIsNotBelieved) {
+  for (const double factor : {0.0, 3.6}) {  // km/h
+    expect_good_maps(in<Chassis>([factor](Chassis& chassis) { chassis.speed *= factor; }), 0.2,
+                     {"motorway", "urban", "drift-one-line"});
+  }
+}
+
+TEST(FaultySensors, AYawRateToTheRightIsNotBelievedForLong) {
+  const Fault fault = in<Localization>([](Localization& pose) { pose.angular_velocity_body *= -1.0; });
+  for (const std::string scene : {"urban", "loop", "lane-change"}) {
+    SCOPED_TRACE(scene);
+    const double line = drive(scene, "line", fault).center[kAt30].rms();
+    EXPECT_LT(drive(scene, "estimator", fault).center[kAt30].rms(), line) << "it is found out in a curve";
+  }
+}
+
+TEST(FaultySensors, LocalizationThatIsNoisyIsBelievedLess) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const Fault fault = in<Localization>([&](Localization& pose) {
+    pose.heading += 0.0175 * normal(random);  // a degree
+    pose.position.x() += 0.15 * normal(random);
+    pose.position.y() += 0.15 * normal(random);
+  });
+  expect_good_maps(fault, 0.16, {"motorway", "urban", "drift-one-line"});
 }
 
 TEST(FaultySensors, ACameraThatFitsStraightLinesIsBelievedNearbyOnly) {

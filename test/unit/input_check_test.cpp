@@ -188,6 +188,14 @@ TEST(LaneMarkerCheck, TakesAReachThatNoCameraHasAsTheFarthestThatOneHas) {
                           HasSubstr("right_lane_marker.view_range is 1e+09 m: taken as 300 m")));
 }
 
+TEST(LaneMarkerCheck, TakesAQualityThatWasRoundedUpAsOne) {
+  LaneMarkers markers = test::lane_about({0.2});
+  markers.left.quality = 1.0000001;
+  const auto checked = check_lane_markers(markers);
+  EXPECT_EQ(checked.input.left.quality, 1.0);
+  EXPECT_THAT(checked.remarks, IsEmpty());
+}
+
 TEST(LaneMarkerCheck, AsksNothingOfAMarkerThatIsNotSeen) {
   LaneMarkers markers = test::lane_about({0.2});
   markers.left.quality = 0.0;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "relative_map/simulation/noise.hpp"
 #include "relative_map/simulation/road.hpp"
 #include "support/lines.hpp"
 #include "support/temporary_folder.hpp"
@@ -79,6 +80,22 @@ TEST(LineEdit, ClosesALapThatOverlapsOrFallsShort) {
       EXPECT_LT(point.kappa, 0.06) << point.s;
     }
     EXPECT_TRUE(make_editable(make_recorded(line)).closed());
+  }
+}
+
+TEST(LineEdit, ClosesANoisyLapWhichStaysALoop) {
+  for (double noise : {0.2, 0.5, 1.0}) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      SCOPED_TRACE(testing::Message() << noise << ", " << seed);
+      Polyline points = test::arc({}, 0.01, 660.0, 1.5);  // 32 m past the start
+      NoiseSource source(seed, 1);
+      for (Point2& point : points) point += Point2(source.draw(noise), source.draw(noise));
+      const EditableLine line = close(editable(points), 5.0);
+      ASSERT_TRUE(line.closed());
+      EXPECT_TRUE(make_editable(make_recorded(line)).closed());
+      const double shares = static_cast<double>(line.points.size()) * 1.5 / (200.0 * kPi);
+      EXPECT_NEAR(shares, 1.0, 0.02);
+    }
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "relative_map/model/config.hpp"
 #include "relative_map/pipeline/paint_samples.hpp"
-#include "relative_map/pipeline/vehicle_state.hpp"
+#include "relative_map/pipeline/pose_buffer.hpp"
 
 namespace relative_map::core {
 

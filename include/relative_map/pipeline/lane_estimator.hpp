@@ -35,6 +35,9 @@ class LaneEstimator {
                                const LineProjection& projection, Time stamp);
   /// `half_width` [m] of the lane, where nothing of it was seen yet.
   void expect_half_width(double half_width) { half_width_ = half_width; }
+  /// Odometry was wrong, and with it what was made of it: forgets it all where paint will show it again,
+  /// which it does not where localization is off by more than paint is believed to be.
+  void doubt_motion();
   /// Forgets everything: localization is believed as it is.
   void reset() { *this = LaneEstimator(); }
 
@@ -129,6 +132,7 @@ class LaneEstimator {
 
   void start(const VehicleState& localized);
   void give_up(const VehicleState& localized, const std::string& why);
+  void listen(const VehicleState& localized);
   void decay(double kept);
   void follow_odometry(const VehicleState& to, double dt);
   void follow_localization(const VehicleState& localized);
@@ -159,7 +163,9 @@ class LaneEstimator {
   double line_s_ = 0.0;        ///< [m] of the vehicle along the line, laps counted on
   double first_knot_s_ = 0.0;  ///< [m] the same for the first knot
   double last_projected_s_ = 0.0;
-  double half_width_ = 1.75;  ///< [m] expected where paint tells nothing
+  double position_variance_ = 0.0;  ///< [m^2] of localization, white from message to message
+  double heading_variance_ = 0.0;   ///< [rad^2] likewise
+  double half_width_ = 1.75;        ///< [m] expected where paint tells nothing
   std::optional<Time> last_paint_, refused_since_;
   std::optional<Surprise> surprise_;
   bool doubted_ = false;  ///< since refused_since_

@@ -15,7 +15,7 @@
 #include "relative_map/pipeline/lanes_in_reach.hpp"
 #include "relative_map/pipeline/map_builder.hpp"
 #include "relative_map/pipeline/marker_lane_estimator.hpp"
-#include "relative_map/pipeline/vehicle_state.hpp"
+#include "relative_map/pipeline/pose_buffer.hpp"
 
 namespace relative_map::core {
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <deque>
 #include <optional>
 #include <string>
 #include <variant>
@@ -39,30 +38,5 @@ bool has_jumped(const VehicleState& before, const VehicleState& after);
 /// Constant speed and yaw rate over `seconds` [s], which may be negative: the arc's chord at its mean
 /// heading.
 Pose2 carried_on(const VehicleState& state, double seconds);
-
-/// The latest poses, to look up where the vehicle was when an image was taken.
-class PoseBuffer {
- public:
-  /// A stamp at or before the newest one's replaces what came after it: time has been set back.
-  /// After a jump the poses before it are forgotten: what was seen from them lies elsewhere now.
-  /// A speed or a yaw rate that is not given comes from the poses before, and a yaw rate that seems never to
-  /// be filled.
-  void add(const VehicleState& state);
-  /// Interpolated between poses, carried on by speed and yaw rate a little beyond them; none further out.
-  std::optional<Pose2> at(Time stamp) const;
-  /// With its speed and yaw rate; there must be one.
-  const VehicleState& newest() const { return states_.back(); }
-  void clear() { states_.clear(); }
-
- private:
-  /// The first of the states before the newest that is not older; none: null.
-  const VehicleState* first_since(Time stamp) const;
-  // Of the newest state, by the poses before it; 0 without any.
-  double turn_rate() const;
-  double speed_along() const;
-
-  std::deque<VehicleState> states_;  ///< by rising stamp
-  Time last_turn_{};                 ///< of the newest yaw rate that was not exactly 0
-};
 
 }  // namespace relative_map::core

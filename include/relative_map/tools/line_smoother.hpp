@@ -24,6 +24,8 @@ struct SmoothedLine {
   double kappa_s = 0.0;
   double greatest_dkappa = 0.0;  ///< [1/m^2]
   double dkappa_s = 0.0;
+  double longest_gap = 0.0;  ///< [m] between recorded points: there the line is a guess
+  double gap_s = 0.0;
   std::string fault;  ///< a sentence if the result can't be used: it says where
 };
 
