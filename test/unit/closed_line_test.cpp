@@ -238,5 +238,19 @@ TEST(ClosedLines, ShortLinesOfAnyShapeAreNotClosed) {
   }
 }
 
+TEST(ClosedLines, EndsThatMeetAtAnAngleDoNotMakeALap) {
+  // A drop: out along x, round, and back to the start from aside.
+  for (const double turn : {0.8, 1.2, 1.6}) {
+    Polyline drop = straight(Pose2(), 60.0, 0.5);
+    const double radius = 60.0 * std::tan(0.5 * turn);
+    const Polyline bend = arc(Pose2(Point2(60.0, 0.0), 0.0), 1.0 / radius, radius * (kPi + turn), 0.5);
+    drop.insert(drop.end(), bend.begin(), bend.end());
+    for (double back = 0.5; back < 60.0; back += 0.5) {
+      drop.push_back(Pose2(Point2::Zero(), turn).to_parent(Point2(60.0 - back, 0.0)));
+    }
+    EXPECT_FALSE(prepare(drop).closed()) << turn;
+  }
+}
+
 }  // namespace
 }  // namespace relative_map::core

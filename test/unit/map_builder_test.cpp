@@ -197,5 +197,26 @@ TEST(MapBuilder, PaintIsFoundRoundAHalfCircle) {
   EXPECT_EQ(types_of(map.lanes[0].right_boundary), Types({kUnknown}));
 }
 
+TEST(MapBuilder, PaintBeyondTheNeighborsIsOnBothSidesOfTheirFarBorders) {
+  const std::vector<LanePath> lanes = {straight_lane("a", 7.0), straight_lane("b", 3.5),
+                                       straight_lane("c", 0.0), straight_lane("d", -3.5),
+                                       straight_lane("e", -7.0)};
+  SeenPaint paint;
+  paint.next_left = BoundaryType::kSolidYellow;
+  paint.next_right = BoundaryType::kCurb;
+  paint.from = 2.0;
+  paint.to = 40.0;
+  const RelativeMap map = map_of(lanes, 2, paint);
+  const auto has = [](const LaneBoundary& boundary, BoundaryType type) {
+    return std::any_of(boundary.paint.begin(), boundary.paint.end(),
+                       [type](const PaintSpan& span) { return span.type == type; });
+  };
+  EXPECT_TRUE(has(map.lanes[0].right_boundary, BoundaryType::kSolidYellow));
+  EXPECT_TRUE(has(map.lanes[1].left_boundary, BoundaryType::kSolidYellow));
+  EXPECT_TRUE(has(map.lanes[3].right_boundary, BoundaryType::kCurb));
+  EXPECT_TRUE(has(map.lanes[4].left_boundary, BoundaryType::kCurb));
+  EXPECT_FALSE(has(map.lanes[4].right_boundary, BoundaryType::kCurb));
+}
+
 }  // namespace
 }  // namespace relative_map::core

@@ -250,5 +250,29 @@ TEST(Tracker, ForgetsItsPlaceWhenReset) {
   EXPECT_NEAR(std::remainder(fresh - 20.0, turn), 0.0, 0.1) << "on either turn";
 }
 
+TEST(Tracker, TakesLinesUpToARightAngleForThoseOfTheVehicle) {
+  const NavigationLine line = prepared(straight(Pose2(), 100.0, 1.0));
+  OnLine(line).at(Pose2(Point2(50.0, 0.0), 80.0 * kPi / 180.0));
+  const LineDrop drop = drop_at(line, Pose2(Point2(50.0, 0.0), 100.0 * kPi / 180.0));
+  EXPECT_EQ(drop.code, StatusCode::kOffRoute);
+  EXPECT_THAT(drop.reason, HasSubstr("it runs the other way"));
+}
+
+TEST(Tracker, LeavesAPassForAnotherThatIsMuchNearer) {
+  // Two turns of a coil, 6 m apart: the vehicle drives from the outer to the inner one.
+  Polyline coil;
+  for (double angle = 0.0; angle <= 4.0 * kPi; angle += 0.01) {
+    coil.push_back((40.0 - 6.0 * angle / (2.0 * kPi)) * Point2(std::cos(angle), std::sin(angle)));
+  }
+  OnLine on(prepared(coil));
+  const auto at = [&](double angle, double radius) {
+    return on.at(Pose2(radius * Point2(std::cos(angle), std::sin(angle)), angle + 0.5 * kPi)).s;
+  };
+  double angle = 1.0;
+  EXPECT_LT(at(angle, 39.0), 60.0);
+  for (double inwards = 0.0; inwards < 6.0; inwards += 0.3) at(angle += 0.02, 39.0 - inwards);
+  EXPECT_GT(at(angle += 0.02, 33.0), 200.0);
+}
+
 }  // namespace
 }  // namespace relative_map::core

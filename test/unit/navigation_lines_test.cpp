@@ -285,5 +285,11 @@ TEST(NavigationLines, KnowWhenTheyAreThinned) {
   EXPECT_FALSE(prepare({recording(even)})->lines.at(0).thinned) << "the last step may be of any length";
 }
 
+TEST(NavigationLines, HaveOneVertexWherePointsAreAHairApart) {
+  Polyline points = straight(Pose2(), 50.0, 1.0);
+  points.insert(points.begin() + 20, points[20] + Point2(5e-4, 0.0));
+  EXPECT_EQ(prepare({recording(points, "a")})->lines.at(0).points.size(), 51u);
+}
+
 }  // namespace
 }  // namespace relative_map::core

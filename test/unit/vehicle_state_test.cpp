@@ -192,5 +192,19 @@ TEST(Speeds, ThatDisagreeAreTold) {
   EXPECT_FALSE(told(36.0)) << "not given";
 }
 
+TEST(Jumps, AreWaysThatNoSpeedExplains) {
+  const auto after = [](double way, double seconds) {
+    VehicleState before, now;
+    before.speed = now.speed = 10.0;
+    now.stamp = from_seconds(seconds);
+    now.map_from_base = Pose2(Point2(way, 0.0), 0.0);
+    return has_jumped(before, now);
+  };
+  EXPECT_FALSE(after(4.9, 0.0));
+  EXPECT_TRUE(after(5.1, 0.0));
+  EXPECT_FALSE(after(19.0, 1.0));
+  EXPECT_TRUE(after(21.0, 1.0));
+}
+
 }  // namespace
 }  // namespace relative_map::core
