@@ -6,21 +6,17 @@
 #include "relative_map/simulation/noise.hpp"
 #include "relative_map/simulation/road.hpp"
 #include "relative_map/tools/line_edit.hpp"
+#include "support/editable_lines.hpp"
 #include "support/lines.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace relative_map::core {
 namespace {
 
+using test::editable;
 using test::fault_of;
+using test::lap;
 using testing::HasSubstr;
-
-EditableLine editable(const Polyline& points) {
-  return make_editable(test::recording(points));
-}
-EditableLine lap(double radius, std::size_t count) {
-  return editable(test::circle(radius, count));
-}
 
 TEST(LineOffset, TheParallelOfACircleIsACircle) {
   for (double distance : {3.5, -3.5}) {
