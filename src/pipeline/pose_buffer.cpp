@@ -25,6 +25,7 @@ void PoseBuffer::add(const VehicleState& state) {
   const bool never_filled = state.yaw_rate == 0.0 && state.stamp - last_turn_ >= kZeroInterval;
   if (never_filled) given.yaw_rate = std::numeric_limits<double>::quiet_NaN();
   odometry_.add(given);
+  given_ = given;
   states_.push_back(given);
   VehicleState& newest = states_.back();
   if (!std::isfinite(given.yaw_rate) || !odometry_.trusts_yaw_rate()) newest.yaw_rate = turn_rate();
@@ -73,18 +74,18 @@ std::optional<Pose2> PoseBuffer::at(Time stamp) const {
                interpolate_angle(a.map_from_base.heading(), b.map_from_base.heading(), weight));
 }
 
-std::vector<std::string> PoseBuffer::remarks() const {
+std::vector<std::string> PoseBuffer::remarks(const std::string& speed_field) const {
   std::vector<std::string> remarks;
-  const auto tell = [&](const char* what, double shown, const char* unit) {
+  const auto tell = [&](const std::string& field, double given, double shown, const char* unit) {
     std::ostringstream sentence;
     sentence.precision(3);
-    sentence << what << " is not that of the poses, which show " << shown << unit
+    sentence << field << " is " << given << unit << ", but the poses show " << shown << unit
              << ": the poses are believed";
     remarks.push_back(sentence.str());
   };
-  if (!odometry_.trusts_speed()) tell("odometry: the speed", newest().speed, " m/s");
+  if (!odometry_.trusts_speed()) tell(speed_field, given_.speed, newest().speed, " m/s");
   if (!odometry_.trusts_yaw_rate()) {
-    tell("localization: pose.angular_velocity_vrf.z", newest().yaw_rate, " rad/s");
+    tell("localization: pose.angular_velocity_vrf.z", given_.yaw_rate, newest().yaw_rate, " rad/s");
   }
   return remarks;
 }

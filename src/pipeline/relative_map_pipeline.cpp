@@ -122,6 +122,7 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
 
 VehicleState RelativeMapPipeline::predicted(VehicleState vehicle, Time now) const {
   if (!config_->predict_to_tick) return vehicle;
+  if (!poses_.trusts_speed()) vehicle.speed = poses_.newest().speed;
   vehicle.yaw_rate = poses_.newest().yaw_rate;
   vehicle.map_from_base = carried_on(vehicle, to_seconds(now - vehicle.stamp));
   vehicle.stamp = now;
@@ -172,14 +173,14 @@ std::variant<VehicleState, Status> RelativeMapPipeline::vehicle_state(Time now) 
     auto disagreement = speeds_disagree(localization_->input, *chassis);
     if (disagreement && poses_.trusts_speed()) add_remarks({std::move(*disagreement)});
   }
-  add_remarks(poses_.remarks());
+  const bool by_chassis = chassis && std::isfinite(chassis->speed);
+  add_remarks(poses_.remarks(by_chassis ? "chassis: speed_mps" : "localization: pose.linear_velocity"));
   const bool markers_are_fresh =
       markers_ && to_seconds(now - markers_->stamp) <= config_->max_age.lane_markers;
   if (markers_are_fresh) add_remarks(marker_remarks_);
   auto state = make_vehicle_state(localization_->input, chassis);
   auto* vehicle = std::get_if<VehicleState>(&state);
-  if (vehicle && !(std::isfinite(vehicle->speed) && poses_.trusts_speed()))
-    vehicle->speed = poses_.newest().speed;
+  if (vehicle && !std::isfinite(vehicle->speed)) vehicle->speed = poses_.newest().speed;
   return state;
 }
 

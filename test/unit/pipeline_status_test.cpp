@@ -180,5 +180,20 @@ TEST(PipelineStatus, WithoutAChassisTheSpeedIsTheVelocitys) {
   EXPECT_NEAR(scene.tick().lanes.at(0).length, 202.0, 1e-9) << "8 s at 25 m/s, and 2 m behind";
 }
 
+TEST(PipelineStatus, ASpeedThatThePosesContradictIsToldAndTheMapGoesOn) {
+  Scene scene(three_straight_lines(3000.0));
+  double x = 100.0;
+  for (int i = 0; i < 80; ++i) {
+    scene.see(lane_about({-0.4}));
+    const RelativeMap map = scene.at(Pose2(Point2(x += 1.0, 0.0), 0.0), 36.0);  // km/h
+    ASSERT_EQ(map.lanes.size(), 3u);
+    EXPECT_LT(std::abs(map.lanes[1].path[3].position.y()), 0.5);
+  }
+  EXPECT_TRUE(
+      scene.remarked("chassis: speed_mps is 36 m/s, but the poses show 10 m/s: the poses are believed"));
+  for (int i = 0; i < 80; ++i) scene.at(Pose2(Point2(x += 1.0, 0.0), 0.0), 10.0);
+  EXPECT_FALSE(scene.remarked("the poses are believed"));
+}
+
 }  // namespace
 }  // namespace relative_map::core

@@ -22,8 +22,8 @@ class PoseBuffer {
   std::optional<Pose2> at(Time stamp) const;
   /// With its speed and yaw rate; there must be one.
   const VehicleState& newest() const { return states_.back(); }
-  /// Faults of speed and yaw rate that the poses show, a sentence each.
-  std::vector<std::string> remarks() const;
+  /// Faults of speed and yaw rate that the poses show, a sentence each. `speed_field`: what gave the speed.
+  std::vector<std::string> remarks(const std::string& speed_field) const;
   bool trusts_speed() const { return odometry_.trusts_speed(); }
   bool trusts_odometry() const { return odometry_.trusts_speed() && odometry_.trusts_yaw_rate(); }
   void clear() { *this = PoseBuffer(); }
@@ -36,6 +36,7 @@ class PoseBuffer {
   double speed_along() const;
 
   OdometryCheck odometry_;
+  VehicleState given_;               ///< the newest one, as it came
   std::deque<VehicleState> states_;  ///< by rising stamp
   Time last_turn_{};                 ///< of the newest yaw rate that was not exactly 0
 };
