@@ -95,7 +95,7 @@ TEST(Doctor, SaysOfNothingAtAllThatNobodyPublishes) {
 TEST(Doctor, TakesACarWithoutACameraForWhole) {
   Observations seen = healthy_system();
   seen.lane_markers =
-      Input<LaneMarkers>{{"/perception/lane_markers", "relative_map/LaneMarkers", {}, {}, {}}, {}};
+      Input<LaneMarkers>{{"/perception/lane_markers", "relative_map/LaneMarkers", {}, {}, {}, {}}, {}};
   seen.lane_markers.topic.subscribers = {"/relative_map_manager"};
   EXPECT_THAT(findings_of(seen, Severity::kWrong), IsEmpty());
   EXPECT_EQ(rules_of(findings_of(seen, Severity::kNote)), std::set<std::string>{"topics_have_publishers"});
