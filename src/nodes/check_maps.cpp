@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bag_input.hpp"
 #include "relative_map/ros/message_check.hpp"
 
 namespace relative_map {
@@ -95,11 +96,7 @@ class Table {
 /// The number of broken rows.
 std::size_t run(const Arguments& arguments) {
   rosbag::Bag bag;
-  try {
-    bag.open(arguments.bag, rosbag::bagmode::Read);
-  } catch (const rosbag::BagException& fault) {
-    throw std::runtime_error(arguments.bag + ": not a readable bag: " + fault.what());
-  }
+  open_bag(arguments.bag, bag);
   Table table;
   core::MapContext context;
   context.frame_id = arguments.frame;

@@ -124,7 +124,7 @@ int run_check(const Words& words, const Remappings&) {
       read_by.header.reference = expected.reference;
     faults += check_file(path, read_by, param);
   }
-  if (faults > 0) std::printf("%zu faults\n", faults);
+  if (faults > 0) std::printf("%zu fault%s\n", faults, faults == 1 ? "" : "s");
   return faults == 0 ? 0 : 1;
 }
 
