@@ -60,9 +60,9 @@ class CheckMaps(ReplayTest):
         self.expect(2, 'there is no map on /other', words=('out.bag', '--topic', '/other'))
 
     def test_what_cannot_be_checked(self):
-        self.expect(2, 'check_maps: out.bag')
+        self.expect(2, 'check_maps: out.bag: not a readable bag: No such file or directory')
         self.write('out.bag', 'no bag')
-        self.expect(2, 'check_maps: out.bag')
+        self.expect(2, 'check_maps: out.bag: not a readable bag: it was cut off, or is no bag')
         self.record('out.bag', [('/relative_map', String('no map'), START)])
         self.expect(2, 'std_msgs/String')
         self.record('out.bag', [('/relative_map', MapMsg(), START)])
