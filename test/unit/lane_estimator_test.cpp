@@ -6,68 +6,16 @@
 
 #include <cmath>
 
-#include "support/scene.hpp"
+#include "support/straight_drive.hpp"
 
 namespace relative_map::core {
 namespace {
 
+using test::current;
+using test::kHalfWidth;
 using test::Scene;
-
-constexpr double kHalfWidth = 1.75;
-constexpr double kStep = 1.0;  // [m] driven in a tick
-
-const Lane& current(const RelativeMap& map) {
-  for (const Lane& lane : map.lanes) {
-    if (lane.id == map.current_lane_id) return lane;
-  }
-  throw std::out_of_range("no current lane");
-}
-
-double y_at(const RelativeMap& map, double x) {
-  const PathPoints& path = current(map).path;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const Point2 &a = path[i - 1].position, &b = path[i].position;
-    if (b.x() >= x) return a.y() + (x - a.x()) / (b.x() - a.x()) * (b.y() - a.y());
-  }
-  throw std::out_of_range("the lane ends before");
-}
-
-/// A vehicle on a straight line along x, its true pose, and what sensors make of it.
-class StraightDrive {
- public:
-  explicit StraightDrive(const PipelineConfig& config = PipelineConfig())
-      : scene({test::recording(test::straight(Pose2(), 3000.0, 1.0))}, config) {}
-
-  /// The lane's paint from the true pose, exactly.
-  LaneMarkers paint() const {
-    const double slope = -std::tan(heading);
-    LaneMarkers markers = test::lane_about({-y / std::cos(heading), slope, 0.0, 0.0}, half_width);
-    return markers;
-  }
-  RelativeMap tick(const LaneMarkers& markers) {
-    scene.see(markers);
-    return tick();
-  }
-  RelativeMap tick() {
-    x += kStep;
-    return scene.at(Pose2(Point2(x, y) + bias, heading + heading_bias));
-  }
-  RelativeMap drive(int ticks) {
-    RelativeMap map;
-    for (int i = 0; i < ticks; ++i) map = tick(paint());
-    return map;
-  }
-  /// [m] left positive, at `ahead` [m].
-  double error(const RelativeMap& map, double ahead) const {
-    return y_at(map, ahead) - (-y / std::cos(heading) - std::tan(heading) * ahead);
-  }
-
-  Scene scene;
-  double x = 10.0, y = 0.2, heading = 0.0;
-  double half_width = kHalfWidth;
-  Point2 bias = Point2::Zero();
-  double heading_bias = 0.0;
-};
+using test::StraightDrive;
+using test::y_at;
 
 TEST(LaneEstimator, TakesLocalizationsOffsetOutWithinASecond) {
   StraightDrive drive;
@@ -114,82 +62,6 @@ TEST(LaneEstimator, OneSideIsEnough) {
   EXPECT_NEAR(drive.error(map, 10.0), 0.0, 0.05);
 }
 
-class Outlier : public testing::TestWithParam<double> {};
-
-TEST_P(Outlier, OnOneSideIsLeftOut) {
-  StraightDrive drive;
-  drive.bias = {0.0, 0.3};
-  drive.drive(20);
-  for (int i = 0; i < 10; ++i) {
-    LaneMarkers markers = drive.paint();
-    markers.left.cubic.c0 += GetParam();
-    const RelativeMap map = drive.tick(markers);
-    EXPECT_NEAR(drive.error(map, 10.0), 0.0, 0.03);
-    EXPECT_TRUE(drive.scene.remarked("left is ignored"));
-  }
-}
-
-TEST_P(Outlier, OnBothSidesIsLeftOut) {
-  StraightDrive drive;
-  drive.drive(20);
-  for (int i = 0; i < 5; ++i) {
-    LaneMarkers markers = drive.paint();
-    markers.left.cubic.c0 += GetParam();
-    markers.right.cubic.c0 += GetParam();
-    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 0.03);
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Jumps, Outlier, testing::Values(-3.5, -2.5, -1.5, 1.5, 2.5, 3.5));
-
-TEST(LaneEstimator, PaintOfAnotherLaneDoesNotPullTheLaneOffItsLine) {
-  StraightDrive drive;
-  for (int i = 0; i < 100; ++i) {
-    LaneMarkers markers = drive.paint();
-    markers.left.cubic.c0 += 3.5;
-    markers.right.cubic.c0 += 3.5;
-    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 1e-9);
-  }
-  EXPECT_TRUE(drive.scene.remarked("is ignored"));
-}
-
-TEST(LaneEstimator, MirroredPaintDoesNotPullTheLaneOffItsLine) {
-  StraightDrive drive;
-  for (int i = 0; i < 50; ++i) {
-    LaneMarkers markers = drive.paint();
-    std::swap(markers.left, markers.right);
-    EXPECT_NEAR(drive.error(drive.tick(markers), 10.0), 0.0, 1e-9);
-  }
-  EXPECT_TRUE(drive.scene.remarked("left of right"));
-}
-
-TEST(LaneEstimator, PaintFromTheFutureIsNotBelieved) {
-  StraightDrive drive;
-  drive.bias = {0.0, 0.5};
-  for (int i = 0; i < 20; ++i) {
-    LaneMarkers markers = drive.paint();
-    markers.stamp = drive.scene.now() + from_seconds(5.0);
-    drive.scene.pipeline().set_lane_markers(markers);
-    EXPECT_NEAR(drive.error(drive.tick(), 10.0), -0.5, 1e-9);
-  }
-  EXPECT_TRUE(drive.scene.remarked("no pose is known"));
-}
-
-TEST(LaneEstimator, FrozenPaintIsFoundOut) {
-  StraightDrive drive;
-  const LaneMarkers frozen = drive.paint();
-  double worst = 0.0;
-  for (int i = 0; i < 200; ++i) {
-    const double phase = 2.0 * kPi * (drive.x - 10.0) / 60.0;
-    drive.y = 0.2 + 0.5 * std::sin(phase);
-    drive.heading = std::atan(0.5 * 2.0 * kPi / 60.0 * std::cos(phase));
-    const RelativeMap map = drive.tick(frozen);
-    if (i > 60) worst = std::max(worst, std::abs(drive.error(map, 10.0)));
-  }
-  EXPECT_TRUE(drive.scene.remarked("frozen"));
-  EXPECT_LT(worst, 0.05);  // localization is exact here
-}
-
 TEST(LaneEstimator, AJumpOfLocalizationDoesNotMoveTheLane) {
   StraightDrive drive;
   drive.drive(20);
@@ -221,40 +93,6 @@ TEST(LaneEstimator, WithoutPaintTheWidthGoesBackToWhatIsExpected) {
   EXPECT_NEAR(map.fusion.left_half_width.value, 1.5, 0.02);
   for (int i = 0; i < 100; ++i) map = drive.tick();
   EXPECT_NEAR(map.fusion.left_half_width.value, kHalfWidth, 0.01);
-}
-
-TEST(LaneEstimator, ALaneThatWidensToOneSideKeepsItsCenter) {
-  for (const double taper : {1.0 / 50.0, 1.0 / 20.0, 1.0 / 10.0}) {
-    for (const bool seen_aslant : {true, false}) {  // or only as wider from image to image
-      if (!seen_aslant && taper < 0.05) continue;   // too slow to tell the border from the lane
-      for (const double side : {1.0, -1.0}) {
-        StraightDrive drive;
-        drive.drive(20);
-        for (double outward = 0.0; outward < 3.0; outward += taper * kStep) {  // up to 6.5 m of lane
-          LaneMarkers markers = drive.paint();
-          Cubic& border = (side > 0.0 ? markers.left : markers.right).cubic;
-          border.c0 += side * outward;
-          if (seen_aslant) border.c1 += side * taper;
-          const double error = drive.error(drive.tick(markers), 10.0);
-          EXPECT_NEAR(error, 0.0, 0.15) << outward;  // of 1.5 m, were it the middle
-        }
-      }
-    }
-  }
-}
-
-TEST(LaneEstimator, AnOffsetBeyondTheLimitIsNotBelieved) {
-  PipelineConfig config;
-  config.lane_fusion.max_offset = 0.5;
-  StraightDrive drive(config);
-  bool told = false;
-  for (int i = 0; i < 100; ++i) {
-    drive.bias.y() = 0.01 * i;
-    const RelativeMap map = drive.tick(drive.paint());
-    EXPECT_LT(std::abs(map.fusion.lateral_offset.value), 0.55);
-    told = told || drive.scene.remarked("not believed");
-  }
-  EXPECT_TRUE(told);
 }
 
 TEST(LaneEstimator, ForgetsWhenTheVehicleIsPutElsewhere) {
