@@ -38,7 +38,7 @@ double LaneEstimator::mean_stddev(const Measurement& measurement) const {
   return std::sqrt(weights.dot(measurement.expected.covariance * weights));
 }
 
-/// Whether both sides lie farther out than they should: the lane opens into a second one. Its center stays
+/// Whether the sides lie farther apart than they should: the lane opens into a second one. Its center stays
 /// with the side that has moved less.
 bool LaneEstimator::is_opening(const std::array<SeenSide, 2>& seen) const {
   if (!seen[0].measurement || !seen[1].measurement) return false;
