@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "relative_map/pipeline/narrow_lanes.hpp"
+#include "relative_map/pipeline/lanes/narrow_lanes.hpp"
 
 namespace relative_map::core {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "relative_map/pipeline/current_lane.hpp"
-#include "relative_map/pipeline/lane_fusion.hpp"
+#include "relative_map/pipeline/fixed_weight/lane_fusion.hpp"
+#include "relative_map/pipeline/lines/current_lane.hpp"
 #include "relative_map/pipeline/relative_map_pipeline.hpp"
 
 namespace relative_map::core {

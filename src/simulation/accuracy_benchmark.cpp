@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 #include "relative_map/pipeline/relative_map_pipeline.hpp"
 
 namespace relative_map::core {

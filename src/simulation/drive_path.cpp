@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "relative_map/pipeline/navigation_lines.hpp"
+#include "relative_map/pipeline/lines/navigation_lines.hpp"
 
 namespace relative_map::core {
 

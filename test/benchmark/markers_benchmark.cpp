@@ -1,8 +1,8 @@
 // The time that rviz costs the node: markers of a map, and their bytes.
 #include <benchmark/benchmark.h>
 
-#include "relative_map/ros/map_markers.hpp"
-#include "relative_map/ros/raw_line.hpp"
+#include "relative_map/ros/setup/raw_line.hpp"
+#include "relative_map/ros/view/map_markers.hpp"
 #include "ros/engine.hpp"
 
 namespace relative_map {

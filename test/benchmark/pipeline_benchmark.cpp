@@ -1,7 +1,7 @@
 // Times of a tick, of the check of its map, and of the intake of lines.
 #include <benchmark/benchmark.h>
 
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 #include "scenes.hpp"
 
 namespace relative_map::core::benchmarks {

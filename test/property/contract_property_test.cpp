@@ -3,7 +3,7 @@
 #include <map>
 
 #include "random_scene.hpp"
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 
 // Whatever comes in, what goes out keeps the contract.
 namespace relative_map::core {

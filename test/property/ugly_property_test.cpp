@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 #include "ugly_drive.hpp"
 
 // No input, however ugly, gets a map out that breaks the contract: map_check never has anything to replace.

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "reference_data.hpp"
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 
 namespace relative_map::core::test {
 namespace {

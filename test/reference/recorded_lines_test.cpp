@@ -5,7 +5,7 @@
 
 #include "reference_data.hpp"
 #include "relative_map/io/navigation_line_file.hpp"
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 
 namespace relative_map::core::test {
 namespace {

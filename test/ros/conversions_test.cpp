@@ -1,10 +1,10 @@
-#include "relative_map/ros/conversions.hpp"
+#include "relative_map/ros/messages/conversions.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "relative_map/pipeline/vehicle_state.hpp"
+#include "relative_map/pipeline/motion/vehicle_state.hpp"
 #include "ros/messages.hpp"
 
 namespace relative_map {

@@ -1,4 +1,4 @@
-#include "relative_map/ros/diagnostics.hpp"
+#include "relative_map/ros/health/diagnostics.hpp"
 
 #include <gmock/gmock.h>
 #include <relative_map/FusionState.h>
@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "relative_map/ros/map_observer.hpp"
+#include "relative_map/ros/health/map_observer.hpp"
 
 namespace relative_map {
 namespace {

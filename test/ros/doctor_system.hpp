@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "messages.hpp"
-#include "relative_map/ros/doctor.hpp"
+#include "relative_map/doctor/doctor.hpp"
 
 // What the doctor sees of a system that is well, to be spoiled in one place.
 namespace relative_map::doctor::test {

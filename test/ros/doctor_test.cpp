@@ -1,4 +1,4 @@
-#include "relative_map/ros/doctor.hpp"
+#include "relative_map/doctor/doctor.hpp"
 
 #include <gmock/gmock.h>
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "relative_map/ros/map_engine.hpp"
+#include "relative_map/ros/map/map_engine.hpp"
 #include "ros/messages.hpp"
 
 namespace relative_map::test {

@@ -1,4 +1,4 @@
-#include "relative_map/ros/footprint.hpp"
+#include "relative_map/ros/setup/footprint.hpp"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "relative_map/ros/parameters.hpp"
+#include "relative_map/ros/setup/parameters.hpp"
 
 namespace relative_map {
 namespace {

@@ -1,7 +1,7 @@
 // Links and map frames: the map is that of base_link, whatever was localized.
 #include <gmock/gmock.h>
 
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 #include "ros/moving_vehicle.hpp"
 
 namespace relative_map {

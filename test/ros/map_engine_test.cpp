@@ -1,5 +1,5 @@
 // What the map engine makes of its inputs as time goes by.
-#include "relative_map/ros/map_engine.hpp"
+#include "relative_map/ros/map/map_engine.hpp"
 
 #include <gmock/gmock.h>
 

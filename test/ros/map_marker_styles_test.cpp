@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "relative_map/ros/map_markers.hpp"
-#include "relative_map/ros/raw_line.hpp"
+#include "relative_map/ros/setup/raw_line.hpp"
+#include "relative_map/ros/view/map_markers.hpp"
 #include "ros/engine.hpp"
 
 namespace relative_map {

@@ -1,4 +1,4 @@
-#include "relative_map/ros/map_markers.hpp"
+#include "relative_map/ros/view/map_markers.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,8 @@
 // A map as a message, and read back from it.
 #include <gmock/gmock.h>
 
-#include "relative_map/pipeline/map_check.hpp"
-#include "relative_map/ros/conversions.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
+#include "relative_map/ros/messages/conversions.hpp"
 #include "ros/engine.hpp"
 
 namespace relative_map {

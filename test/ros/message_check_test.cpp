@@ -1,5 +1,5 @@
 // What only a message can get wrong: it says things twice.
-#include "relative_map/ros/message_check.hpp"
+#include "relative_map/ros/messages/message_check.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "relative_map/ros/parameters.hpp"
+#include "relative_map/ros/setup/parameters.hpp"
 
 #include <XmlRpcValue.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "relative_map/ros/throttled_log.hpp"
+#include "relative_map/ros/health/throttled_log.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "engine.hpp"
 #include "property/ugly_drive.hpp"
-#include "relative_map/ros/message_check.hpp"
+#include "relative_map/ros/messages/message_check.hpp"
 
 // No messages, however ugly, get a map out that breaks the contract, nor one that the check had to replace.
 namespace relative_map {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 #include "relative_map/pipeline/relative_map_pipeline.hpp"
 #include "support/lines.hpp"
 #include "support/markers.hpp"

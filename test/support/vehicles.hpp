@@ -1,7 +1,7 @@
 #pragma once
 
-#include "relative_map/pipeline/navigation_lines.hpp"
-#include "relative_map/pipeline/vehicle_state.hpp"
+#include "relative_map/pipeline/lines/navigation_lines.hpp"
+#include "relative_map/pipeline/motion/vehicle_state.hpp"
 #include "support/lines.hpp"
 
 // Prepared lines, and vehicles on them.

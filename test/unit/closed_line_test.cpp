@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "relative_map/pipeline/navigation_lines.hpp"
+#include "relative_map/pipeline/lines/navigation_lines.hpp"
 #include "support/vehicles.hpp"
 
 // How laps are recognised and stitched.

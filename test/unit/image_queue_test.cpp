@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/image_queue.hpp"
+#include "relative_map/pipeline/paint/image_queue.hpp"
 
 #include <gmock/gmock.h>
 

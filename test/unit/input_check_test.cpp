@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/input_check.hpp"
+#include "relative_map/pipeline/motion/input_check.hpp"
 
 #include <gmock/gmock.h>
 

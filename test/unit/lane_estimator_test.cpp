@@ -1,6 +1,6 @@
 // The estimator, seen through the pipeline: drives in closed form with one error at a time.
 
-#include "relative_map/pipeline/lane_estimator.hpp"
+#include "relative_map/pipeline/estimation/lane_estimator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lane_fusion.hpp"
+#include "relative_map/pipeline/fixed_weight/lane_fusion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lane_marker_path.hpp"
+#include "relative_map/pipeline/fixed_weight/lane_marker_path.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

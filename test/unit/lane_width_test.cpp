@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lane_width.hpp"
+#include "relative_map/pipeline/lanes/lane_width.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lanes_in_reach.hpp"
+#include "relative_map/pipeline/lines/lanes_in_reach.hpp"
 
 #include <gmock/gmock.h>
 

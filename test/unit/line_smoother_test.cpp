@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "relative_map/pipeline/navigation_lines.hpp"
+#include "relative_map/pipeline/lines/navigation_lines.hpp"
 #include "relative_map/simulation/noise.hpp"
 #include "relative_map/simulation/road.hpp"
 #include "relative_map/tools/line_check.hpp"

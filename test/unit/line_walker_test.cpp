@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/line_walker.hpp"
+#include "relative_map/pipeline/lines/line_walker.hpp"
 
 #include <gtest/gtest.h>
 

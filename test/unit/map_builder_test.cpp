@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/map_builder.hpp"
+#include "relative_map/pipeline/lanes/map_builder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/map_check.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/marker_lane_estimator.hpp"
+#include "relative_map/pipeline/estimation/marker_lane_estimator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "relative_map/pipeline/narrow_lanes.hpp"
+#include "relative_map/pipeline/lanes/narrow_lanes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "relative_map/pipeline/lane_width.hpp"
+#include "relative_map/pipeline/lanes/lane_width.hpp"
 #include "support/lanes.hpp"
 
 namespace relative_map::core {

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/navigation_line_tracker.hpp"
+#include "relative_map/pipeline/lines/navigation_line_tracker.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/navigation_lines.hpp"
+#include "relative_map/pipeline/lines/navigation_lines.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

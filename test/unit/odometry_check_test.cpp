@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/odometry_check.hpp"
+#include "relative_map/pipeline/motion/odometry_check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/offset_profile.hpp"
+#include "relative_map/pipeline/estimation/offset_profile.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/pose_buffer.hpp"
+#include "relative_map/pipeline/motion/pose_buffer.hpp"
 
 #include <gtest/gtest.h>
 

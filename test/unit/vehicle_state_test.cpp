@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/vehicle_state.hpp"
+#include "relative_map/pipeline/motion/vehicle_state.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,14 +8,14 @@
 
 #include "relative_map/model/config.hpp"
 #include "relative_map/model/map.hpp"
-#include "relative_map/pipeline/image_queue.hpp"
-#include "relative_map/pipeline/input_check.hpp"
-#include "relative_map/pipeline/lane_estimator.hpp"
-#include "relative_map/pipeline/lane_marker_path.hpp"
-#include "relative_map/pipeline/lanes_in_reach.hpp"
-#include "relative_map/pipeline/map_builder.hpp"
-#include "relative_map/pipeline/marker_lane_estimator.hpp"
-#include "relative_map/pipeline/pose_buffer.hpp"
+#include "relative_map/pipeline/estimation/lane_estimator.hpp"
+#include "relative_map/pipeline/estimation/marker_lane_estimator.hpp"
+#include "relative_map/pipeline/fixed_weight/lane_marker_path.hpp"
+#include "relative_map/pipeline/lanes/map_builder.hpp"
+#include "relative_map/pipeline/lines/lanes_in_reach.hpp"
+#include "relative_map/pipeline/motion/input_check.hpp"
+#include "relative_map/pipeline/motion/pose_buffer.hpp"
+#include "relative_map/pipeline/paint/image_queue.hpp"
 
 namespace relative_map::core {
 

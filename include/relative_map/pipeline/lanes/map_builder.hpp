@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "relative_map/model/config.hpp"
+#include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/lanes/lane_width.hpp"
+#include "relative_map/pipeline/lines/lane_path.hpp"
+
+namespace relative_map::core {
+
+/// Paint seen beside the current lane between two places along it.
+struct SeenPaint {
+  BoundaryType left = BoundaryType::kUnknown;
+  BoundaryType right = BoundaryType::kUnknown;
+  BoundaryType next_left = BoundaryType::kUnknown;   ///< of the lane to the left
+  BoundaryType next_right = BoundaryType::kUnknown;  ///< of the lane to the right
+  double from = 0.0, to = 0.0;                       ///< [m] s of the lane
+};
+
+/// Lanes, boundaries, samples, neighbours and the road around them. `lanes` and `borders` belong together.
+/// Leaves stamp, sequence number and status to the caller.
+RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::size_t current,
+                      const SeenPaint& paint, const PipelineConfig& config);
+
+}  // namespace relative_map::core
