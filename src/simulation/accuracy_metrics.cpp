@@ -7,7 +7,7 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kPastEnd = 3.0;         // [m] beyond a line's end that it is taken to go straight on
+constexpr double kPastEnd = 1.0;         // [m] beyond a line's end that it is taken to go straight on
 constexpr double kReach = 90.0;          // [m] of a lane that is looked at
 constexpr double kUsableError = 1.5;     // [m]
 constexpr double kUsableLength = 30.0;   // [m]
@@ -92,11 +92,12 @@ MapErrors AccuracyMeter::measure_lane(const Lane* lane, std::size_t true_lane, c
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto offset =
         lateral_offset(center, base.to_local(places[i].position), base.rotate_to_local(places[i].direction));
+    if (i == 0) errors.beside = offset;
     errors.center[i] = capped(offset.value_or(kMaxError));
   }
-  if (places.size() <= kAt10) return errors;
+  if (places.empty()) return errors;
 
-  const double error = std::abs(*errors.center[kAt10]);
+  const double error = std::abs(*errors.center[std::min(kAt10, places.size() - 1)]);
   bool covers = false;
   if (lane != nullptr) {
     const NearestFoot beside = nearest_foot(center, Point2::Zero());
@@ -104,7 +105,7 @@ MapErrors AccuracyMeter::measure_lane(const Lane* lane, std::size_t true_lane, c
     covers = ahead >= kUsableLength || ahead >= lane->remaining_distance - 1.0;
   }
   errors.usable = covers && error < kUsableError;
-  if (lane == nullptr || error >= kMaxError) return errors;
+  if (lane == nullptr || error >= kMaxError || places.size() <= kAt10) return errors;
 
   const RoadPlace& place = places[kAt10];
   const Point2 here = base.to_local(place.position), direction = base.rotate_to_local(place.direction);
@@ -167,6 +168,8 @@ MapErrors AccuracyMeter::measure(const RelativeMap& map) {
     last_.reset();
     return *best;
   }
+  const double claimed = map.fusion.lateral_offset.stddev;
+  if (claimed > 0.0 && best->beside) best->consistent = std::abs(*best->beside) <= 3.0 * claimed;
   Published published{*lane, truth.path_from_base, true_lane};
   measure_jitter(published, truth, *best);
   last_ = std::move(published);

@@ -39,11 +39,6 @@ std::string padded(const std::string& text, int width) {
   return stream.str();
 }
 
-double share_of_usable(const AccuracyRow& row) {
-  if (row.usable_of == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(row.usable) / static_cast<double>(row.usable_of);
-}
-
 std::string names(const std::string& scene, const std::string& method) {
   return padded(scene, kNameWidth) + padded(method, kMethodWidth) + "|";
 }
@@ -68,7 +63,7 @@ void print_row(const AccuracyRow& row, std::ostream& out) {
   for (const ErrorStatistics& error : row.center) out << cell(error.percentile_95());
   out << " |" << cell(row.boundary.rms()) << cell(row.half_width.rms())
       << cell(row.heading.rms() * 180.0 / kPi) << " |" << cell(row.jitter_10.rms())
-      << cell(row.jitter_30.rms()) << " |" << cell(100.0 * share_of_usable(row), 2)
+      << cell(row.jitter_30.rms()) << " |" << cell(100.0 * row.usable_share(), 2)
       << cell(static_cast<double>(row.violations), 0) << cell(1e6 * row.cost.median(), 0) << "\n";
 }
 
@@ -138,7 +133,7 @@ void write_table(const BenchmarkResult& result, std::ostream& out) {
       for (const ErrorStatistics& error : row.center) line << error.rms();
       for (const ErrorStatistics& error : row.center) line << error.percentile_95();
       line << row.boundary.rms() << row.half_width.rms() << row.heading.rms() << row.jitter_10.rms()
-           << row.jitter_30.rms() << share_of_usable(row) << static_cast<double>(row.violations)
+           << row.jitter_30.rms() << row.usable_share() << static_cast<double>(row.violations)
            << row.cost.median();
     }
   }

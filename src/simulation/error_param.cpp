@@ -31,6 +31,13 @@ std::vector<std::string> ErrorParam::validate() const {
   check_range("errors/drift", localization.drift, 0.0, 1000.0, faults);
   check_range("errors/drift_time", localization.drift_time, 1.0, 1e6, faults);
   check_range("errors/yaw_rate_bias", localization.yaw_rate_bias, 0.0, 1.0, faults);
+  check_range("errors/yaw_rate_scale", localization.yaw_rate_scale, 0.0, 0.5, faults);
+  check_episode("errors/jump", localization.jump, faults);
+  check_range("errors/jump_min", localization.min_jump, 0.0, 1000.0, faults);
+  check_range("errors/jump_max", localization.max_jump, localization.min_jump, 1000.0, faults);
+  check_range("errors/distance_scale", localization.pose_drift.distance_scale, 0.0, 0.5, faults);
+  check_range("errors/turn_scale", localization.pose_drift.turn_scale, 0.0, 0.5, faults);
+  check_range("errors/heading_walk", localization.pose_drift.heading_walk, 0.0, 1.0, faults);
   check_range("errors/speed_scale", chassis.speed_scale, 0.0, 0.5, faults);
   check_range("errors/recording_offset", recording.offset, 0.0, 10.0, faults);
   check_range("errors/recording_wander", recording.wander, 0.0, 10.0, faults);
@@ -48,6 +55,10 @@ std::vector<std::string> ErrorParam::validate() const {
   check_range("errors/max_jump", markers.max_jump, markers.min_jump, 100.0, faults);
   check_range("errors/min_latency", markers.min_latency, 0.0, 10.0, faults);
   check_range("errors/max_latency", markers.max_latency, markers.min_latency, 10.0, faults);
+  check_range("errors/marker_yaw", markers.yaw, -1.0, 1.0, faults);
+  check_range("errors/marker_lateral", markers.lateral, -2.0, 2.0, faults);
+  check_range("errors/marker_nearest", markers.nearest, 0.0, 300.0, faults);
+  check_episode("errors/blind", markers.blind, faults);
   return faults;
 }
 

@@ -22,6 +22,7 @@ MarkerErrors::MarkerErrors(const MarkerErrorParam& param, const CubicNoise& nois
       view_range_change_(param.view_range_change, param.view_range_time, NoiseSource(seed, 30)),
       dropouts_(param.dropout, seed, 31),
       outliers_(param.outlier, seed, 32),
+      blind_(param.blind, seed, 34),
       latency_(random_engine(seed, 33)) {
   std::uint32_t stream = 40;
   for (std::size_t role = 0; role < kRoles; ++role) {
@@ -76,6 +77,11 @@ void MarkerErrors::spoil(LaneMarkers& markers, double time) {
     if (dropout->right) markers.right = {};
     if (dropout->left) markers.next_left.clear();
     if (dropout->right) markers.next_right.clear();
+  }
+  if (blind_.at(time) != nullptr) {
+    markers.left = markers.right = {};
+    markers.next_left.clear();
+    markers.next_right.clear();
   }
   // Noise is not paint.
   if (markers.left.quality == 0.0) markers.left = {};

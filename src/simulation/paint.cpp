@@ -33,9 +33,10 @@ Polyline visible_paint(const DrivePath& path, double s, std::size_t vertex, cons
   const double min_cosine = std::cos(sight.max_turn);
   for (double ahead = 0.0; path.ends == Ends::kClosed || s + ahead <= path.length(); ahead += kSpacing) {
     const PathPoint point = interpolate(path.points, path.hold(s + ahead), vertex);
-    if (point.direction.dot(base.forward()) < min_cosine) break;
-    seen.push_back(base.to_local(point.position + line.l_at(point.s) * left_of(point.direction)));
-    if (seen.back().x() > sight.range) break;
+    if (point.direction.dot(base.forward()) < min_cosine || std::abs(point.kappa) > sight.max_kappa) break;
+    const Point2 paint = base.to_local(point.position + line.l_at(point.s) * left_of(point.direction));
+    if (sight.nearest == 0.0 || paint.x() >= sight.nearest) seen.push_back(paint);
+    if (paint.x() > sight.range) break;
   }
   return seen;
 }

@@ -75,6 +75,18 @@ RoadShape urban_road(std::uint64_t seed, double length) {
   return surveyor.road();
 }
 
+RoadShape town_road(std::uint64_t seed, double length) {
+  Surveyor surveyor(seed, 65);
+  while (surveyor.road().length() < length) {
+    surveyor.straight(surveyor.uniform(30.0, 120.0));
+    surveyor.curve(surveyor.uniform(4.0, 15.0), surveyor.uniform(0.9, 1.9), 3.0);
+    if (surveyor.uniform(0.0, 1.0) < 0.4) continue;
+    surveyor.straight(surveyor.uniform(20.0, 80.0));
+    surveyor.curve(surveyor.uniform(30.0, 90.0), surveyor.uniform(0.2, 0.6), 10.0);
+  }
+  return surveyor.road();
+}
+
 RoadShape long_straights_road(std::uint64_t seed, double length) {
   Surveyor surveyor(seed, 64);
   while (surveyor.road().length() < length) {

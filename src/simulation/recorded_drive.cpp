@@ -20,8 +20,8 @@ struct Beat {
   Time due;
 };
 
-Beat random_beat(std::mt19937_64& engine, double low_rate, double high_rate) {
-  std::uniform_real_distribution<double> rate(low_rate, high_rate), phase(0.0, 1.0);
+Beat random_beat(std::mt19937_64& engine, const TransmissionParam& param) {
+  std::uniform_real_distribution<double> rate(param.min_rate, param.max_rate), phase(0.0, 1.0);
   const double period = 1.0 / rate(engine);
   return {from_seconds(period), from_seconds(period * phase(engine))};
 }
@@ -84,8 +84,15 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
 
   std::mt19937_64 engine = random_engine(scene.vehicle.seed, 70);
   Beat truth{kTruthPeriod, Time::zero()};
-  Beat localization = random_beat(engine, 50.0, 100.0), chassis = random_beat(engine, 50.0, 100.0),
-       markers = random_beat(engine, 10.0, 15.0);
+  const SensorTransmission& sensors = scene.transmission;
+  Beat localization = random_beat(engine, sensors.localization),
+       chassis = random_beat(engine, sensors.chassis), markers = random_beat(engine, sensors.markers);
+  const std::uint64_t seed = scene.vehicle.seed;
+  Transmission localizations(sensors.localization, seed, 71), speeds(sensors.chassis, seed, 72),
+      images(sensors.markers, seed, 73);
+  const auto deliver = [&](const auto& message, const std::vector<Time>& arrivals) {
+    for (const Time arrival : arrivals) drive.deliveries.push_back({arrival, message});
+  };
   const Time duration = from_seconds(scene.duration);
   Spoiler spoiler(scene);
   Time last_marker_message = kStart;
@@ -100,18 +107,18 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
     if (next == &localization) {
       Localization message = vehicle.measure_localization();
       message.stamp = now;
-      drive.deliveries.push_back({now, message});
+      deliver(message, localizations.arrivals(now));
     } else if (next == &chassis) {
       Chassis message = vehicle.measure_chassis();
       message.stamp = now;
-      drive.deliveries.push_back({now, message});
+      deliver(message, speeds.arrivals(now));
     } else if (next == &markers) {
       LaneMarkers message = vehicle.measure_lane_markers();
       message.stamp = now;
       spoiler.spoil(message);
       // One camera's messages do not overtake each other.
       last_marker_message = std::max(last_marker_message, now + vehicle.marker_latency());
-      drive.deliveries.push_back({last_marker_message, message});
+      deliver(message, images.arrivals(last_marker_message));
     }
   }
   std::stable_sort(drive.deliveries.begin(), drive.deliveries.end(),

@@ -8,7 +8,7 @@ namespace relative_map::core {
 namespace {
 
 constexpr double kStep = 0.5;        // [m] of the walk along a lane
-constexpr double kEitherLane = 0.6;  // [m] from the line between two lanes: both may be meant
+constexpr double kEitherLane = 0.5;  // [m] from the line between two lanes: both may be meant
 
 class Walk {
  public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "relative_map/simulation/smooth_step.hpp"
@@ -56,6 +57,8 @@ std::vector<std::string> VehicleSimulationConfig::validate() const {
   }
   check_range("max_turn", paint.max_turn, 0.01, 1.2, faults);
   check_range("max_residual", paint.max_residual, 1e-3, 1.0, faults);
+  check_range("min_radius", paint.min_radius, 0.0, 1e4, faults);
+  check_range("noise/localization_velocity", noise.localization_velocity, 0.0, 10.0, faults);
   for (std::string& fault : errors.validate()) faults.push_back(std::move(fault));
   return faults;
 }
@@ -67,6 +70,7 @@ VehicleSimulation::VehicleSimulation(const RecordedLine& line, const VehicleSimu
       wander_(config.wander, config.wander_wavelength, config.seed),
       localization_noise_(config.seed, 0),
       chassis_noise_(config.seed, 1),
+      velocity_noise_(config.seed, 3),
       localization_errors_(config.errors.localization, config.seed),
       marker_errors_(
           config.errors.markers,
@@ -75,6 +79,11 @@ VehicleSimulation::VehicleSimulation(const RecordedLine& line, const VehicleSimu
   std::mt19937_64 engine = random_engine(config.seed, 2);
   speed_scale_ =
       1.0 + config.errors.chassis.speed_scale * std::uniform_real_distribution<double>(-1.0, 1.0)(engine);
+  if (config.errors.localization.pose_drift.active()) {
+    pose_drift_.emplace(config.errors.localization.pose_drift, speed_scale_,
+                        localization_errors_.yaw_rate_scale(), localization_errors_.yaw_rate_bias(),
+                        config.seed);
+  }
   PaintParam& paint = config_.paint;
   if (paint.lines.empty()) {
     paint.lines = {{paint.lane_half_width, paint.left_type}, {-paint.lane_half_width, paint.right_type}};
@@ -91,6 +100,7 @@ void VehicleSimulation::restart() {
   driven_ = 0.0;
   speed_ = yaw_rate_ = 0.0;
   place();
+  if (pose_drift_) pose_drift_->restart();
 }
 
 void VehicleSimulation::place() {
@@ -140,10 +150,10 @@ void VehicleSimulation::step(double dt) {
 }
 
 Localization VehicleSimulation::measure_localization() {
-  const Pose2 truth = map_from_base();
+  const double seconds = to_seconds(time_);
+  const Pose2 truth = pose_drift_ ? pose_drift_->at(map_from_base(), seconds) : map_from_base();
   Localization measured;
   measured.stamp = time_;
-  const double seconds = to_seconds(time_);
   const Point2 bias = localization_errors_.position_bias(seconds);
   const double error_x = localization_noise_.draw(config_.noise.localization_position);
   const double error_y = localization_noise_.draw(config_.noise.localization_position);
@@ -152,9 +162,12 @@ Localization VehicleSimulation::measure_localization() {
   measured.heading = normalize_angle(truth.heading() + localization_errors_.heading_bias(seconds) +
                                      localization_noise_.draw(config_.noise.localization_heading));
   measured.map_from_body = Eigen::AngleAxisd(measured.heading, Eigen::Vector3d::UnitZ());
-  measured.linear_velocity.head<2>() = speed_ * truth.forward();
-  measured.angular_velocity_body.z() =
-      yaw_rate_ + localization_errors_.yaw_rate_bias() + localization_noise_.draw(config_.noise.yaw_rate);
+  measured.angular_velocity_body.z() = localization_errors_.yaw_rate_scale() * yaw_rate_ +
+                                       localization_errors_.yaw_rate_bias() +
+                                       localization_noise_.draw(config_.noise.yaw_rate);
+  const double velocity_x = velocity_noise_.draw(config_.noise.localization_velocity);
+  const double velocity_y = velocity_noise_.draw(config_.noise.localization_velocity);
+  measured.linear_velocity.head<2>() = speed_ * truth.forward() + Point2(velocity_x, velocity_y);
   return measured;
 }
 
@@ -169,10 +182,17 @@ Chassis VehicleSimulation::measure_chassis() {
 
 LaneMarker VehicleSimulation::measure_marker(const PaintLine& line, double view_range) const {
   LaneMarker marker;
-  const Sight sight{view_range, config_.paint.max_turn};
+  if (!line.painted) return marker;
+  const MarkerErrorParam& errors = config_.errors.markers;
+  const double min_radius = config_.paint.min_radius;
+  const Sight sight{view_range, config_.paint.max_turn, errors.nearest,
+                    min_radius > 0.0 ? 1.0 / min_radius : std::numeric_limits<double>::infinity()};
+  // Where the camera really is and looks, which is not where it is taken to be.
+  const Pose2 base(pose_.to_parent(Point2(0.0, errors.lateral)), pose_.heading() + errors.yaw);
   const FittedPaint paint =
-      fit_paint(visible_paint(path_, s_, vertex_, line, pose_, sight), config_.paint.max_residual);
-  if (paint.range < kMinVisiblePaint) return marker;
+      fit_paint(visible_paint(path_, s_, vertex_, line, base, sight), config_.paint.max_residual);
+  if (paint.range < errors.nearest + kMinVisiblePaint) return marker;
+  marker.longitude_start = errors.nearest;
   marker.type = line.type;
   marker.quality = config_.paint.quality;
   marker.cubic = paint.cubic;

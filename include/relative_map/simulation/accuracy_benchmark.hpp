@@ -5,81 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "relative_map/model/config.hpp"
-#include "relative_map/simulation/accuracy_metrics.hpp"
-#include "relative_map/simulation/accuracy_scenes.hpp"
+#include "relative_map/simulation/accuracy_row.hpp"
+#include "relative_map/simulation/drive_mapping.hpp"
 
 namespace relative_map::core {
-
-/// Makes the maps of a drive, and measures them.
-struct AccuracyMethod {
-  std::string name;
-  std::string fusion = "fixed_weight";  ///< LaneFusionParam::method
-  bool deliver_markers = true;
-
-  PipelineConfig config(LaneSource lane_source) const;
-};
-
-/// The published original's fusion, the lines alone, and the estimator; those that this build knows.
-std::vector<AccuracyMethod> accuracy_methods();
-
-struct MeasuredMap {
-  double time = 0.0;  ///< [s] since the start of the drive
-  MapErrors errors;
-  std::size_t violations = 0;  ///< of the output contract
-  std::string violation;       ///< the first one
-  double cost = 0.0;           ///< [s] that its inputs and its tick took
-};
-
-/// Plays the drive into the pipeline that the node runs, and ticks it ten times a second. The first second,
-/// in which there may be no map yet, is left out.
-std::vector<MeasuredMap> map_drive(const RecordedDrive& drive, const PipelineConfig& config,
-                                   bool deliver_markers);
-
-/// Root mean square and 95th percentile of absolute values.
-class ErrorStatistics {
- public:
-  void add(double error) { errors_.push_back(error); }
-  void add(const std::optional<double>& error) {
-    if (error) add(*error);
-  }
-  void add(const ErrorStatistics& other) {
-    errors_.insert(errors_.end(), other.errors_.begin(), other.errors_.end());
-  }
-  bool empty() const { return errors_.empty(); }
-  std::size_t count() const { return errors_.size(); }
-  // NaN if empty.
-  double rms() const;
-  double median() const { return percentile(0.5); }
-  double percentile_95() const { return percentile(0.95); }
-
- private:
-  double percentile(double share) const;
-
-  std::vector<double> errors_;
-};
-
-/// All maps of a scene, or of a group of scenes, that one method made.
-struct AccuracyRow {
-  std::string scene, method;
-  SceneGroup group = SceneGroup::kWithLine;
-  std::array<ErrorStatistics, kErrorDistances.size()> center;  ///< [m]
-  ErrorStatistics boundary, half_width, jitter_10, jitter_30;  ///< [m]
-  ErrorStatistics heading;                                     ///< [rad]
-  ErrorStatistics cost;                                        ///< [s] a map
-  std::size_t usable = 0, usable_of = 0;                       ///< maps
-  std::size_t violations = 0;
-  std::string violation;  ///< the first one
-
-  void add(const MeasuredMap& map);
-  void add(const AccuracyRow& other);
-};
 
 struct BenchmarkOptions {
   std::uint64_t seeds = 3;
   ErrorLevel level;
-  std::vector<std::string> scenes;   ///< none: all, if there are no `lines`
+  std::vector<std::string> scenes;   ///< none: all, if there are no `lines` and `worlds`
   std::vector<RecordedLine> lines;   ///< to be driven on, too
+  std::vector<std::string> worlds;   ///< to be driven in, too
+  bool markers_alone = false;        ///< the worlds' drives without their lines, too
   std::vector<std::string> methods;  ///< none: all
 };
 

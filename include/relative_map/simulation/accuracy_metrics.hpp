@@ -24,6 +24,8 @@ struct MapErrors {
   std::optional<double> heading;                            ///< [rad] at 10 m
   std::optional<double> jitter_10, jitter_30;  ///< [m] change from the map before, at points of the road
   std::optional<bool> usable;                  ///< covers the next 30 m, and is less than 1.5 m off at 10 m
+  std::optional<double> beside;                ///< [m] as center at 0 m, but as large as it is
+  std::optional<bool> consistent;  ///< that is within three of the standard deviations that the map claims
 };
 
 /// Measures the maps of one drive, in their order.

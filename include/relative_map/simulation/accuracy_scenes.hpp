@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "relative_map/model/config.hpp"
+#include "relative_map/simulation/transmission.hpp"
 #include "relative_map/simulation/true_road.hpp"
 #include "relative_map/simulation/vehicle_simulation.hpp"
 
@@ -39,6 +40,7 @@ struct AccuracyScene {
   VehicleSimulationConfig vehicle;                         ///< drives along `reference`
   LaneSource lane_source = LaneSource::kOfflineGenerated;
   MarkerFault marker_fault = MarkerFault::kNone;
+  SensorTransmission transmission;
   double duration = 90.0;  ///< [s]
 };
 

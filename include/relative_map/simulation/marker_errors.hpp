@@ -42,7 +42,7 @@ class MarkerErrors {
   MarkerErrorParam param_;
   std::vector<Noise> noises_;  ///< four of each role: left, right, next left, next right, and the image
   OrnsteinUhlenbeck view_range_change_;
-  Episodes dropouts_, outliers_;
+  Episodes dropouts_, outliers_, blind_;
   std::mt19937_64 latency_;
 };
 

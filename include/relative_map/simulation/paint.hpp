@@ -15,6 +15,7 @@ struct PaintLine {
   double shift = 0.0;               ///< [m] to the left, of the stretch that has left its place
   double from_s = 0.0, to_s = 0.0;  ///< [m] where it is all that far away ...
   double ramp = 40.0;               ///< ... and the length [m] over which it goes there and comes back
+  bool painted = true;              ///< false: the lane's border is there, but nothing to be seen
 
   double l_at(double s) const;
 };
@@ -23,11 +24,13 @@ struct PaintLine {
 struct Sight {
   double range = 50.0;     ///< [m] in x
   double max_turn = 0.78;  ///< [rad] by which the road may turn from the camera's axis
+  double nearest = 0.0;    ///< [m] in x; 0: from beside the camera on
+  double max_kappa = 1e9;  ///< [1/m] where the road is bent more sharply than that, it has no paint
 };
 
 /// What a camera in the body frame sees of the paint beside a path: a point each metre, from the path's s [m]
-/// to the first one past the sight's range, or to where the path ends or turns out of sight. `base` is the
-/// body's pose in the path's frame, `vertex` the path's vertex at or near s.
+/// to the first one past the sight's range, or to where the path or its paint ends or turns out of sight.
+/// `base` is the body's pose in the path's frame, `vertex` the path's vertex at or near s.
 Polyline visible_paint(const DrivePath& path, double s, std::size_t vertex, const PaintLine& line,
                        const Pose2& base, const Sight& sight);
 

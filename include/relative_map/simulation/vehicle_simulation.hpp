@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct NoiseParam {
   double marker_c2 = 0.0;               ///< [1/m]
   double marker_c3 = 0.0;               ///< [1/m^2]
   double yaw_rate = 0.0;                ///< [rad/s]
+  double localization_velocity = 0.0;   ///< [m/s] in x and in y
 };
 
 /// The paint of the road that is driven on, and how the camera sees it.
@@ -39,6 +41,7 @@ struct PaintParam {
   std::vector<PaintLine> lines;  ///< from left to right; none: the two at lane_half_width
   double max_turn = 0.78;        ///< [rad] by which the road may turn before it is out of sight
   double max_residual = 0.05;    ///< [m] of the cubics; where they can't follow the paint they end
+  double min_radius = 0.0;       ///< [m] of the road; sharper bends have no paint
 };
 
 /// Moves the vehicle sideways for good.
@@ -114,10 +117,11 @@ class VehicleSimulation {
   DrivePath path_;
   SpeedProfile speed_profile_;
   Wander wander_;
-  NoiseSource localization_noise_, chassis_noise_;
+  NoiseSource localization_noise_, chassis_noise_, velocity_noise_;
   LocalizationErrors localization_errors_;
   MarkerErrors marker_errors_;
   double speed_scale_;  ///< [-] that the chassis measures with
+  std::optional<PoseDrift> pose_drift_;
 
   Time time_{};
   Time marker_latency_{};
