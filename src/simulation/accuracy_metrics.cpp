@@ -122,8 +122,8 @@ MapErrors AccuracyMeter::measure_lane(const Lane* lane, std::size_t true_lane, c
                             const std::vector<WidthSample>& samples, std::optional<double>& border_error,
                             std::optional<double>& width_error) {
     const double l = road.paint[paint].l_at(road.path.hold(place.s));
-    const double half_width = std::abs(l - target.l);
-    if (std::abs(half_width - target.half_width) > kAwayPaint) return;
+    const double half_width = std::abs(l - road.center_at(target, place.s));
+    if (std::abs(half_width - road.half_width_at(target, place.s)) > kAwayPaint) return;
     const RoadPlace painted = road.at(place.s, l);
     const auto offset = lateral_offset(published.points, base.to_local(painted.position), direction);
     border_error = capped(offset.value_or(kMaxError));

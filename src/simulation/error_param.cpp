@@ -37,6 +37,7 @@ std::vector<std::string> ErrorParam::validate() const {
   check_range("errors/jump_max", localization.max_jump, localization.min_jump, 1000.0, faults);
   check_range("errors/distance_scale", localization.pose_drift.distance_scale, 0.0, 0.5, faults);
   check_range("errors/turn_scale", localization.pose_drift.turn_scale, 0.0, 0.5, faults);
+  check_range("errors/closed_after", localization.pose_drift.closed_after, 0.0, 1e6, faults);
   check_range("errors/heading_walk", localization.pose_drift.heading_walk, 0.0, 1.0, faults);
   check_range("errors/speed_scale", chassis.speed_scale, 0.0, 0.5, faults);
   check_range("errors/recording_offset", recording.offset, 0.0, 10.0, faults);

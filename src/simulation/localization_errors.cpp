@@ -57,7 +57,7 @@ double LocalizationErrors::heading_bias(double time) {
 
 PoseDrift::PoseDrift(const PoseDriftParam& param, double speed_scale, double yaw_rate_scale,
                      double yaw_rate_bias, std::uint64_t seed)
-    : param_(param), walk_(seed, 17) {
+    : param_(param), walk_(seed, 17), closures_(random_engine(seed, 18)) {
   NoiseSource scales(seed, 16);
   distance_scale_ += scales.draw(param.distance_scale);
   turn_scale_ += scales.draw(param.turn_scale);
@@ -68,6 +68,10 @@ PoseDrift::PoseDrift(const PoseDriftParam& param, double speed_scale, double yaw
 }
 
 Pose2 PoseDrift::at(const Pose2& truth, double time) {
+  if (param_.closed_after > 0.0 && time >= next_closure_) {
+    restart();
+    next_closure_ = time + std::exponential_distribution<double>(1.0 / param_.closed_after)(closures_);
+  }
   if (!last_) last_ = Last{truth, truth, time};
   const Point2 moved = distance_scale_ * last_->truth.to_local(truth.position());
   const double turned = turn_scale_ * angle_difference(truth.heading(), last_->truth.heading()) +

@@ -22,9 +22,15 @@ bool follows(const Cubic& cubic, const Polyline& points, double max_residual) {
 
 double PaintLine::l_at(double s) const {
   const double outside = std::max({0.0, from_s - s, s - to_s});
-  if (shift == 0.0 || outside >= ramp) return l;
+  const double in_place = l + wave_at(s);
+  if (shift == 0.0 || outside >= ramp) return in_place;
   const double t = 1.0 - outside / ramp;
-  return l + shift * smooth_step(t).value;
+  return in_place + shift * smooth_step(t).value;
+}
+
+double PaintLine::wave_at(double s) const {
+  if (wave == 0.0) return 0.0;
+  return wave * std::sin(2.0 * kPi * s / wave_length + wave_phase);
 }
 
 Polyline visible_paint(const DrivePath& path, double s, std::size_t vertex, const PaintLine& line,

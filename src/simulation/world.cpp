@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "relative_map/simulation/random_process.hpp"
 #include "relative_map/simulation/recording_errors.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double kReferenceSpacing = 0.1;      // [m]
 constexpr double kSpareRoad = 60.0;            // [m] beyond what is driven
+constexpr double kShareToLineEnd = 0.6;        // of the way that could be driven
+constexpr double kStopBeforeEnd = 1.0;         // [m]
 constexpr std::uint64_t kLineSeeds = 1000003;  // between the seeds of two lines' errors
 
 /// Of a world's name, the same on every computer (FNV-1a): no world has another's errors, and a new world
@@ -27,7 +30,8 @@ std::uint64_t hash_of(const std::string& name) {
 void lay_lanes(const World& world, std::uint64_t seed, AccuracyScene& scene) {
   const WorldRoad& road = world.road;
   std::mt19937_64 engine = random_engine(seed, 80);
-  std::uniform_real_distribution<double> width(road.min_width, road.max_width);
+  std::uniform_real_distribution<double> width(road.min_width, road.max_width), wave_length(90.0, 250.0),
+      phase(-kPi, kPi);
   std::vector<double> widths;
   double total = 0.0;
   for (std::size_t i = 0; i < road.lanes; ++i) total += widths.emplace_back(width(engine));
@@ -37,6 +41,9 @@ void lay_lanes(const World& world, std::uint64_t seed, AccuracyScene& scene) {
   for (std::size_t i = 0; i <= road.lanes; ++i) {
     const bool outermost = i == 0 || i == road.lanes;
     paint.push_back({l, outermost ? BoundaryType::kSolidWhite : BoundaryType::kDottedWhite});
+    paint.back().wave = 0.5 * road.width_change;
+    paint.back().wave_length = wave_length(engine);
+    paint.back().wave_phase = phase(engine);
     if (i < road.lanes) {
       scene.lanes.push_back({l - 0.5 * widths[i], 0.5 * widths[i], i, i + 1});
       l -= widths[i];
@@ -44,6 +51,26 @@ void lay_lanes(const World& world, std::uint64_t seed, AccuracyScene& scene) {
   }
   paint.front().painted = road.left_painted;
   paint.back().painted = road.right_painted;
+}
+
+/// The middle between a lane's borders, from the road's start to where the lines end.
+RecordedLine middle_of(const RoadShape& road, const AccuracyScene& scene, const TrueLane& lane,
+                       double spacing) {
+  const std::vector<PaintLine>& paint = scene.vehicle.paint.lines;
+  RecordedLine line = road.lane(lane.l, spacing);
+  const double step = road.length() / static_cast<double>(line.points.size() - 1);
+  std::vector<LinePoint> points;
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    const double s = step * static_cast<double>(i);
+    if (s > scene.end_s) break;
+    const double wave = 0.5 * (paint[lane.left_paint].wave_at(s) + paint[lane.right_paint].wave_at(s));
+    const Point2 position = road.at(s, lane.l + wave).position;
+    points.push_back(line.points[i]);
+    points.back().x = position.x();
+    points.back().y = position.y();
+  }
+  line.points = std::move(points);
+  return line;
 }
 
 void record_lines(const World& world, const RoadShape& road, std::uint64_t seed, AccuracyScene& scene) {
@@ -56,7 +83,8 @@ void record_lines(const World& world, const RoadShape& road, std::uint64_t seed,
   const auto others = other_lines(world.others, road, driven, spacing, seed);
   const bool behind = !others.empty() && others.front().priority == 0;
   for (std::size_t i = 0; i < scene.lanes.size(); ++i) {
-    RecordedLine line = road.lane(scene.lanes[i].l, spacing, "lane_" + std::to_string(i));
+    RecordedLine line = middle_of(road, scene, scene.lanes[i], spacing);
+    line.name = "lane_" + std::to_string(i);
     line.priority = static_cast<std::uint32_t>(i + (behind ? 1 : 0));
     record(line);
   }
@@ -74,6 +102,13 @@ void set_manoeuvre(const World& world, std::uint64_t seed, AccuracyScene& scene)
       time += standing(engine) + 3.0;  // to brake in
       vehicle.speed_changes.push_back({time, speed(engine)});
     }
+  } else if (world.drive.manoeuvre == Manoeuvre::kReverse) {
+    std::uniform_real_distribution<double> start(15.0, 25.0), back(8.0, 18.0);
+    const double stop = start(engine), reverse = stop + 7.0, again = reverse + back(engine);
+    vehicle.speed_changes = {{stop, 0.0}, {reverse, -2.0}, {again, 0.0}, {again + 3.0, world.drive.speed}};
+  } else if (world.drive.manoeuvre == Manoeuvre::kLineEnd) {
+    scene.end_s = kShareToLineEnd * world.drive.speed * world.drive.duration;
+    vehicle.stop_s = scene.end_s - kStopBeforeEnd;
   } else if (world.drive.manoeuvre == Manoeuvre::kLaneChanges) {
     std::uniform_real_distribution<double> pause(150.0, 300.0), length(60.0, 140.0), side(-1.0, 1.0);
     std::size_t lane = world.road.driven;

@@ -65,8 +65,10 @@ RoadShape world_road(RoadKind kind, std::uint64_t seed, double length) {
       return country_road(seed, length);
     case RoadKind::kUrban:
       return urban_road(seed, length);
-    default:
+    case RoadKind::kTown:
       return town_road(seed, length);
+    default:
+      return closed_road(random_start(seed));
   }
 }
 

@@ -56,6 +56,15 @@ LocalizationClass plain_gnss() {
   return c;
 }
 
+LocalizationClass fast_gnss() {
+  // An IMU fills the gaps and makes the noise white and small; bias and jumps are the receiver's.
+  LocalizationClass c = plain_gnss();
+  c.position_noise = 0.03;
+  c.heading_noise = 0.1 * kDegree;
+  c.transmission = {100.0, 100.0, 0.005, 0.02, 0.01, 0.01, 0.01, 0.1};
+  return c;
+}
+
 LocalizationClass slow_gnss() {
   LocalizationClass c = plain_gnss();
   c.errors.bias = 1.5;
@@ -81,6 +90,21 @@ LocalizationClass slam() {
   c.errors.pose_drift.turn_scale = 0.01;
   c.errors.pose_drift.heading_walk = 0.03 * kDegree;  // 0.3 degrees in 100 m
   c.transmission = {10.0, 10.0, 0.05, 0.1};
+  return c;
+}
+
+LocalizationClass closing_slam() {
+  LocalizationClass c = slam();
+  c.errors.pose_drift.closed_after = 25.0;  // a familiar place every few hundred metres
+  return c;
+}
+
+LocalizationClass other_datum() {
+  // WGS 84 and ETRS89 lie 0.8 m apart, national grids and an antenna's lever arm that nobody entered 1 to 5
+  // m.
+  LocalizationClass c = corrected_gnss();
+  c.errors.bias = 3.5;
+  c.errors.bias_time = 1e5;
   return c;
 }
 
@@ -226,6 +250,15 @@ CameraClass far_starting_camera() {
   // The bonnet of a lorry or a van hides the road up to there.
   CameraClass c = usual_camera();
   c.errors.nearest = 6.0;
+  return c;
+}
+
+CameraClass deceived_camera() {
+  // Kerbs, tar joints, tyre tracks in snow and removed paint run beside the paint for seconds.
+  CameraClass c = usual_camera();
+  c.errors.outlier = {12.0, 0.5, 4.0};
+  c.errors.min_jump = 0.3;
+  c.errors.max_jump = 1.4;
   return c;
 }
 

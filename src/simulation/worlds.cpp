@@ -20,9 +20,14 @@ const WorldRoad kTwoLanes{RoadKind::kCountry, 2, 1, 3.0, 3.75};
 const WorldRoad kLeftPaint{RoadKind::kCountry, 1, 0, 2.8, 3.6, 0.0, true, false};
 const WorldRoad kRightPaint{RoadKind::kUrban, 1, 0, 2.9, 4.0, 25.0, false, true};
 
+// Bays, islands and turning lanes make a lane half a metre wider and narrower again.
+const WorldRoad kChanging{RoadKind::kCountry, 1, 0, 3.1, 3.7, 0.0, true, true, 0.5};
+const WorldRoad kLaps{RoadKind::kLoop, 1, 0, 3.0, 3.6};
+
 const WorldDrive kCountrySpeed{17.0, 60.0}, kMotorwaySpeed{31.0, 60.0}, kUrbanSpeed{11.0, 70.0},
     kTownSpeed{9.0, 90.0}, kStopAndGo{9.0, 80.0, Manoeuvre::kStopAndGo},
-    kLaneChanges{25.0, 70.0, Manoeuvre::kLaneChanges};
+    kLaneChanges{25.0, 70.0, Manoeuvre::kLaneChanges}, kReverse{10.0, 70.0, Manoeuvre::kReverse},
+    kLineEnd{13.0, 60.0, Manoeuvre::kLineEnd}, kLapSpeed{15.0, 110.0};
 
 std::vector<World> make_worlds() {
   return {
@@ -42,20 +47,32 @@ std::vector<World> make_worlds() {
        usual_odometry(), usual_camera(), usual_recording()},
       {"usual.stop_and_go", "standing, crawling, driving", kTwoLanes, kStopAndGo, corrected_gnss(),
        usual_odometry(), usual_camera(), usual_recording()},
+      {"usual.reverse", "stops, reverses, goes on", kTwoLanes, kReverse, corrected_gnss(), usual_odometry(),
+       usual_camera(), usual_recording()},
+      {"usual.line_end", "stops at the end of the line", kCountry, kLineEnd, corrected_gnss(),
+       usual_odometry(), usual_camera(), usual_recording()},
+      {"usual.laps", "laps of a closed line", kLaps, kLapSpeed, corrected_gnss(), usual_odometry(),
+       usual_camera(), usual_recording()},
       {"gnss.country", "plain GNSS at 10 Hz: a bias of minutes, jumps, lost, repeated and late messages",
        kCountry, kCountrySpeed, plain_gnss(), usual_odometry(), usual_camera(), usual_recording()},
       {"gnss.urban", "likewise, corners without paint", kUrban, kUrbanSpeed, plain_gnss(), usual_odometry(),
        usual_camera(), usual_recording()},
       {"gnss.motorway", "likewise, at 5 Hz and three lanes, without jumps", kMotorway, kMotorwaySpeed,
        slow_gnss(), usual_odometry(), usual_camera(), usual_recording()},
+      {"gnss.fast", "likewise, filtered to 100 Hz with an IMU, jumps", kCountry, kCountrySpeed, fast_gnss(),
+       usual_odometry(), usual_camera(), usual_recording()},
+      {"gnss.datum", "localization of decimetres, metres beside the map", kCountry, kCountrySpeed,
+       other_datum(), usual_odometry(), usual_camera(), usual_recording()},
       {"drift.slam_country", "SLAM that drifts", kCountry, kCountrySpeed, slam(), usual_odometry(),
        usual_camera(), usual_recording()},
       {"drift.slam_town", "likewise, corners from 4 m on without paint", kTown, kTownSpeed, slam(),
        usual_odometry(), usual_camera(), usual_recording()},
+      {"drift.slam_closing", "likewise, put right by a closed loop now and then", kTown, kTownSpeed,
+       closing_slam(), usual_odometry(), usual_camera(), usual_recording()},
       {"drift.dead_reckoning", "wheels and a gyro alone", kTwoLanes, kCountrySpeed, dead_reckoning(),
        good_odometry(), usual_camera(), usual_recording()},
-      {"camera.good", "", kCountry, kCountrySpeed, corrected_gnss(), usual_odometry(), good_camera(),
-       usual_recording()},
+      {"camera.good", "5 cm near, 65 m far", kCountry, kCountrySpeed, corrected_gnss(), usual_odometry(),
+       good_camera(), usual_recording()},
       {"camera.poor", "rain: noisy for seconds, short-sighted, often wrong", kCountry, kCountrySpeed,
        corrected_gnss(), usual_odometry(), poor_camera(), usual_recording()},
       {"camera.aside", "0.7 degrees and 6 cm off its mounting", kCountry, kCountrySpeed, corrected_gnss(),
@@ -68,6 +85,8 @@ std::vector<World> make_worlds() {
        corrected_gnss(), usual_odometry(), blind_camera(), usual_recording()},
       {"camera.far_start", "sees nothing nearer than 6 m", kCountry, kCountrySpeed, corrected_gnss(),
        usual_odometry(), far_starting_camera(), usual_recording()},
+      {"camera.deceived", "follows kerbs and joints for seconds", kCountry, kCountrySpeed, corrected_gnss(),
+       usual_odometry(), deceived_camera(), usual_recording()},
       {"odometry.cheap", "a gyro off by up to 0.6 deg/s, a speed by up to 3 %", kCountry, kCountrySpeed,
        corrected_gnss(), cheap_odometry(), usual_camera(), usual_recording()},
       {"odometry.cheap_gnss", "likewise with plain GNSS, corners without paint", kUrban, kUrbanSpeed,
@@ -84,6 +103,8 @@ std::vector<World> make_worlds() {
        usual_recording()},
       {"width.wide", "a lane of 4.1 to 4.6 m", kWide, kCountrySpeed, corrected_gnss(), usual_odometry(),
        usual_camera(), usual_recording()},
+      {"width.changes", "a lane that changes its width by half a metre", kChanging, kCountrySpeed,
+       corrected_gnss(), usual_odometry(), usual_camera(), usual_recording()},
       {"paint.left", "on the left only", kLeftPaint, kCountrySpeed, corrected_gnss(), usual_odometry(),
        usual_camera(), usual_recording()},
       {"paint.right", "on the right only, none in corners", kRightPaint, kUrbanSpeed, corrected_gnss(),

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "relative_map/simulation/accuracy_row.hpp"
 #include "relative_map/simulation/road.hpp"
 #include "support/lines.hpp"
 
@@ -174,6 +175,42 @@ TEST(AccuracyMeter, TheLaneIsTheOneThatTheVehicleIsInAndNearTheBorderEither) {
   const MapErrors errors =
       AccuracyMeter(in_the_left_lane).measure(map_of(5.0, Pose2(Point2(0.0, -2.75), 0.0)));
   EXPECT_EQ(errors.center[2].value_or(kNaN), -2.0);
+}
+
+TEST(AccuracyMeter, AMapIsHeldAgainstWhatItClaims) {
+  const RecordedDrive drive = straight_drive(1, 0.0);
+  AccuracyMeter meter(drive);
+  RelativeMap map = map_of(5.0, Pose2(Point2(0.0, 0.31), 0.0));
+  EXPECT_FALSE(meter.measure(map).consistent) << "it claims nothing";
+  map.fusion.lateral_offset.stddev = 0.1;
+  EXPECT_EQ(meter.measure(map).consistent, false);
+  map.fusion.lateral_offset.stddev = 0.104;
+  EXPECT_EQ(meter.measure(map).consistent, true);
+  map = map_of(5.0, Pose2(Point2(0.0, 8.0), 0.0));  // errors count 2 m at most, but not here
+  map.fusion.lateral_offset.stddev = 1.0;
+  EXPECT_EQ(meter.measure(map).consistent, false);
+}
+
+TEST(AccuracyRow, TellsSharesAndTheWorstSecond) {
+  std::vector<MeasuredMap> drive(60);
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    drive[i].time = 0.1 * static_cast<double>(i);
+    drive[i].errors.center[2] = i >= 30 && i < 40 ? -0.5 : 0.1;
+    drive[i].errors.usable = i != 0;
+    if (i < 50) drive[i].errors.consistent = i >= 5;
+    drive[i].painted = i % 2 == 0;
+  }
+  AccuracyRow row, both;
+  EXPECT_TRUE(std::isnan(row.worst_second));
+  row.add(drive);
+  EXPECT_NEAR(row.worst_second, 0.5, 1e-9);
+  EXPECT_NEAR(row.usable_share(), 59.0 / 60.0, 1e-12);
+  EXPECT_NEAR(row.consistent_share(), 0.9, 1e-12);
+  EXPECT_NEAR(row.painted_share(), 0.5, 1e-12);
+  for (MeasuredMap& map : drive) map.errors.center[2] = 0.2;
+  row.add(drive);
+  both.add(row);
+  EXPECT_NEAR(both.worst_second, 0.5, 1e-9);
 }
 
 TEST(TrueRoad, LooksAheadAlongTheLaneNotTheRoad) {

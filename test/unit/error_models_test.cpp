@@ -175,6 +175,67 @@ TEST(LocalizationErrors, YawRateBiasIsWithinItsLimit) {
   EXPECT_NEAR(sum / 500.0, 0.0, 0.0003);
 }
 
+TEST(LocalizationErrors, AJumpLastsAsLongAndIsAsFarAsAskedFor) {
+  LocalizationErrorParam param;
+  param.jump = {20.0, 5.0, 15.0};
+  param.min_jump = 0.5;
+  param.max_jump = 4.0;
+  LocalizationErrors errors(param, 3);
+  int jumps = 0;
+  double since = 0.0;
+  Point2 last = Point2::Zero();
+  for (double t = 0.0; t < 20000.0; t += 0.1) {
+    const Point2 bias = errors.position_bias(t);
+    if (bias == last) continue;
+    const bool away = last == Point2::Zero();
+    if (away) {
+      ++jumps;
+      EXPECT_GE(bias.norm(), 0.5);
+      EXPECT_LE(bias.norm(), 4.0);
+    } else {
+      EXPECT_EQ(bias, Point2(Point2::Zero()));
+      EXPECT_GE(t - since, 4.9);
+      EXPECT_LE(t - since, 15.2);
+    }
+    since = t;
+    last = bias;
+  }
+  EXPECT_NEAR(jumps, 20000.0 / 30.0, 80.0);
+}
+
+/// The vehicle drives 100 m at 10 m/s, turns left on the spot of a corner, and drives 100 m again.
+Pose2 at_corner(double time) {
+  const double way = 10.0 * time;
+  if (way <= 100.0) return {Point2(way, 0.0), 0.0};
+  return {Point2(100.0, way - 100.0), 0.5 * kPi};
+}
+
+TEST(PoseDrift, IsWhatItsSensorsAreWrongBy) {
+  PoseDriftParam param;
+  param.dead_reckoned = true;
+  PoseDrift drift(param, 1.02, 1.01, 0.001, 1);
+  Pose2 seeming;
+  for (int i = 0; i <= 2000; ++i) seeming = drift.at(at_corner(0.01 * i), 0.01 * i);
+  EXPECT_NEAR(seeming.heading(), 0.5 * kPi * 1.01 + 0.001 * 20.0, 1e-6);
+  EXPECT_NEAR(seeming.position().norm(), 1.02 * std::sqrt(2.0) * 100.0, 2.0);
+  EXPECT_LT(seeming.position().x(), 102.0 - 100.0 * 0.015) << "it has turned too far";
+  drift.restart();
+  EXPECT_EQ(drift.at(Pose2(), 21.0).position(), Point2(Point2::Zero()));
+}
+
+TEST(PoseDrift, WalksWithTheRootOfTheWay) {
+  PoseDriftParam param;
+  param.heading_walk = 0.002;
+  std::vector<double> headings;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    PoseDrift drift(param, 1.0, 1.0, 0.0, seed);
+    Pose2 seeming;
+    for (int i = 0; i <= 100; ++i) seeming = drift.at(Pose2(Point2(4.0 * i, 0.0), 0.0), 0.1 * i);
+    headings.push_back(seeming.heading());
+  }
+  EXPECT_NEAR(rms(headings), 0.002 * std::sqrt(400.0), 0.003);
+}
+
 TEST(RecordLine, WithoutErrorsIsTheTruth) {
   const RecordedLine truth = demo_road().lane(0.0, 0.5);
   const RecordedLine recorded = record_line(truth, {}, 1);

@@ -74,6 +74,24 @@ TEST(Layers, UseOnlyThoseAboveThem) {
   }
 }
 
+TEST(Layers, WhatJudgesTheEstimatorDoesNotKnowIt) {
+  // A world that shared a constant with the estimator would flatter it: neither sees the other's headers, but
+  // for the pipeline's entrance, the intake of lines, and the contract's check.
+  static const std::regex kEstimator(
+      R"re(^relative_map/pipeline/(?!relative_map_pipeline|lines/|contract/))re");
+  const fs::path root = RELATIVE_MAP_SOURCE_DIR;
+  for (const fs::path& folder : {root / "include/relative_map/simulation", root / "src/simulation"}) {
+    for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
+      if (!file.is_regular_file()) continue;
+      for (const std::string& header : includes_of(file.path())) {
+        EXPECT_FALSE(std::regex_search(header, kEstimator)) << file.path() << " includes " << header;
+      }
+    }
+  }
+  EXPECT_TRUE(std::regex_search("relative_map/pipeline/estimation/noise.hpp", kEstimator));
+  EXPECT_FALSE(std::regex_search("relative_map/pipeline/contract/map_check.hpp", kEstimator));
+}
+
 TEST(Layers, AWrongIncludeIsFound) {
   EXPECT_EQ(fault_of("pipeline", "ros/time.h"), "a ROS header");
   EXPECT_EQ(fault_of("io", "relative_map/MapMsg.h"), "a ROS header");

@@ -19,6 +19,7 @@ struct PoseDriftParam {
   double distance_scale = 0.0;  ///< [-] standard deviation of the share by which ways are too long
   double turn_scale = 0.0;      ///< [-] standard deviation of the share by which turns are too large
   double heading_walk = 0.0;    ///< [rad/sqrt(m)] random walk of the heading by distance driven
+  double closed_after = 0.0;    ///< [s] on average, when a closed loop puts the pose right again; 0: never
   /// Also the yaw rate's bias and scale and the chassis' speed scale: the pose is made of these sensors.
   bool dead_reckoned = false;
 

@@ -58,6 +58,8 @@ class PoseDrift {
   double distance_scale_ = 1.0, turn_scale_ = 1.0;  ///< [-]
   double yaw_rate_bias_ = 0.0;                      ///< [rad/s]
   NoiseSource walk_;
+  std::mt19937_64 closures_;
+  double next_closure_ = 0.0;  ///< [s]
   std::optional<Last> last_;
 };
 

@@ -16,8 +16,12 @@ struct PaintLine {
   double from_s = 0.0, to_s = 0.0;  ///< [m] where it is all that far away ...
   double ramp = 40.0;               ///< ... and the length [m] over which it goes there and comes back
   bool painted = true;              ///< false: the lane's border is there, but nothing to be seen
+  double wave = 0.0;  ///< [m] by which it sways about its place, as lanes change their width ...
+  double wave_length = 100.0, wave_phase = 0.0;  ///< ... over so many [m], from a phase [rad] on
 
   double l_at(double s) const;
+  /// [m] to the left of its place.
+  double wave_at(double s) const;
 };
 
 /// How far a camera sees.

@@ -21,6 +21,7 @@ enum class RoadKind {
   kCountry,   ///< 80 to 300 m
   kUrban,     ///< blocks with corners of 12 to 20 m, and bends
   kTown,      ///< an old town: corners down to 4 m
+  kLoop,      ///< laps of a closed road with radii of 60 m
 };
 
 /// Lanes side by side, of which one is driven.
@@ -31,9 +32,16 @@ struct WorldRoad {
   double min_width = 3.25, max_width = 3.75;       ///< [m] of a lane; each is drawn
   double min_paint_radius = 0.0;                   ///< [m] bends that are sharper have no paint
   bool left_painted = true, right_painted = true;  ///< of the outermost borders
+  double width_change = 0.0;                       ///< [m] by which the widths change along the road, most
 };
 
-enum class Manoeuvre { kSteady, kLaneChanges, kStopAndGo };
+enum class Manoeuvre {
+  kSteady,
+  kLaneChanges,
+  kStopAndGo,
+  kReverse,  ///< stops, goes back for a while, and on again
+  kLineEnd,  ///< stops a metre before the line's end; the road goes on
+};
 
 struct WorldDrive {
   double speed = 15.0;     ///< [m/s] where the road allows it
