@@ -49,6 +49,13 @@ void set_open_ends(PathPoints& points) {
 
 }  // namespace
 
+Polyline positions_of(const PathPoints& points) {
+  Polyline positions;
+  positions.reserve(points.size());
+  for (const PathPoint& point : points) positions.push_back(point.position);
+  return positions;
+}
+
 void compute_arc_length(PathPoints& points) {
   double s = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {

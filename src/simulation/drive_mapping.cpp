@@ -56,11 +56,7 @@ std::vector<AccuracyMethod> accuracy_methods() {
 std::vector<MeasuredMap> map_drive(const RecordedDrive& drive, const PipelineConfig& config,
                                    bool deliver_markers) {
   RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>(config));
-  IntakeParam intake;
-  intake.stitch_closed_lines = config.enable_cyclic_rerouting;
-  intake.lane_half_width =
-      std::max(config.map_param.default_left_width, config.map_param.default_right_width);
-  pipeline.set_navigation_lines(prepare_navigation_lines(drive.navigation, intake));
+  pipeline.set_navigation_lines(prepare_navigation_lines(drive.navigation, IntakeParam::of(config)));
 
   std::vector<MeasuredMap> maps;
   AccuracyMeter meter(drive);

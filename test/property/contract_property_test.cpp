@@ -17,9 +17,8 @@ template <class Look>
 void drive(std::uint64_t seed, const SceneParam& param, int steps, Look look) {
   RandomDrive drive(seed, param);
   RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>(drive.config()));
-  IntakeParam intake;
-  intake.stitch_closed_lines = drive.config().enable_cyclic_rerouting;
-  pipeline.set_navigation_lines(prepare_navigation_lines({"map", drive.lines()}, intake));
+  pipeline.set_navigation_lines(
+      prepare_navigation_lines({"map", drive.lines()}, IntakeParam::of(drive.config())));
   for (int i = 0; i < steps; ++i) {
     drive.step(pipeline);
     look(pipeline.tick(drive.now()), i);

@@ -248,9 +248,7 @@ UglyInputs UglyDrive::next() {
   }
   if (random_.chance(0.1)) {
     inputs.config = ugly_config(random_);
-    intake_.stitch_closed_lines = inputs.config->enable_cyclic_rerouting;
-    intake_.lane_half_width =
-        std::min(inputs.config->map_param.default_left_width, inputs.config->map_param.default_right_width);
+    intake_ = IntakeParam::of(*inputs.config);
   }
   move_vehicle();
   if (random_.chance(0.9)) inputs.localization = localization();

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "relative_map/pipeline/lines/lane_path.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "support/lines.hpp"
 
 // Lanes in the body frame, between the stages.

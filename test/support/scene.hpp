@@ -34,11 +34,8 @@ class Scene {
   }
 
   void set_lines(std::vector<RecordedLine> lines) {
-    IntakeParam param;
-    param.stitch_closed_lines = config_.enable_cyclic_rerouting;
-    param.lane_half_width =
-        std::max(config_.map_param.default_left_width, config_.map_param.default_right_width);
-    pipeline_.set_navigation_lines(prepare_navigation_lines({"map", std::move(lines)}, param));
+    pipeline_.set_navigation_lines(
+        prepare_navigation_lines({"map", std::move(lines)}, IntakeParam::of(config_)));
   }
 
   /// A tenth of a second later, with the vehicle at `pose`.

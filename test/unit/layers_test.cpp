@@ -1,6 +1,7 @@
 // A layer may use only those above it in the table: what a file includes shows it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -25,6 +26,15 @@ const std::map<std::string, std::set<std::string>> kMayUse = {
     {"ros", {"geometry", "model", "pipeline", "io", "ros"}},
     {"doctor", {"geometry", "model", "pipeline", "io", "ros", "doctor"}},
     {"apps", {"geometry", "model", "pipeline", "io", "simulation", "tools", "ros", "doctor", "apps"}},
+};
+/// The rooms of the tick, in the order in which each may use those before it.
+const std::vector<std::string> kRooms = {"motion",     "lines",        "paint",   "lanes",
+                                         "estimation", "fixed_weight", "contract"};
+/// What a room may not use though it comes before: neither method is made of the other, and the check must
+/// not share what it checks by.
+const std::map<std::string, std::set<std::string>> kMustNotUse = {
+    {"fixed_weight", {"estimation"}},
+    {"contract", {"motion", "lines", "paint", "lanes", "estimation", "fixed_weight"}},
 };
 const std::set<std::string> kMayUseRos = {"ros", "doctor", "apps"};
 
@@ -54,6 +64,18 @@ std::string fault_of(const std::string& layer, const std::string& header) {
   std::smatch match;
   if (!std::regex_search(header, match, kOwn)) return "";
   return kMayUse.at(layer).count(match[1]) > 0 ? "" : "a layer that is not above it";
+}
+
+/// The fault in what one file of a room of the pipeline includes; empty: none.
+std::string fault_of_room(const std::string& room, const std::string& header) {
+  static const std::regex kPipeline(R"re(^relative_map/pipeline/(?:([a-z_]+)/)?)re");
+  std::smatch match;
+  if (!std::regex_search(header, match, kPipeline)) return "";
+  const auto place = [](const std::string& name) { return std::find(kRooms.begin(), kRooms.end(), name); };
+  const auto banned = kMustNotUse.find(room);
+  if (banned != kMustNotUse.end() && banned->second.count(match[1]) > 0) return "a room that it must not use";
+  return place(match[1]) <= place(room) && place(match[1]) != kRooms.end() ? ""
+                                                                           : "a room that is not before it";
 }
 
 TEST(Layers, UseOnlyThoseAboveThem) {
@@ -90,6 +112,38 @@ TEST(Layers, WhatJudgesTheEstimatorDoesNotKnowIt) {
   }
   EXPECT_TRUE(std::regex_search("relative_map/pipeline/estimation/noise.hpp", kEstimator));
   EXPECT_FALSE(std::regex_search("relative_map/pipeline/contract/map_check.hpp", kEstimator));
+}
+
+TEST(Layers, RoomsOfTheTickUseOnlyThoseBeforeThem) {
+  const fs::path root = RELATIVE_MAP_SOURCE_DIR;
+  for (const char* part : {"include/relative_map/pipeline", "src/pipeline"}) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(root / part)) {
+      if (!entry.is_directory()) continue;
+      const std::string room = entry.path().filename();
+      EXPECT_NE(std::find(kRooms.begin(), kRooms.end(), room), kRooms.end()) << room << " has no place";
+      std::size_t files = 0;
+      for (const fs::directory_entry& file : fs::directory_iterator(entry)) {
+        ++files;
+        for (const std::string& header : includes_of(file.path())) {
+          EXPECT_EQ(fault_of_room(room, header), "") << file.path() << " includes " << header;
+        }
+      }
+      EXPECT_GT(files, 0u) << room;
+    }
+  }
+}
+
+TEST(Layers, AWrongIncludeInARoomIsFound) {
+  EXPECT_EQ(fault_of_room("lines", "relative_map/pipeline/lanes/lane_path.hpp"),
+            "a room that is not before it");
+  EXPECT_EQ(fault_of_room("lanes", "relative_map/pipeline/relative_map_pipeline.hpp"),
+            "a room that is not before it");
+  EXPECT_EQ(fault_of_room("contract", "relative_map/pipeline/lanes/lane_path.hpp"),
+            "a room that it must not use");
+  EXPECT_EQ(fault_of_room("fixed_weight", "relative_map/pipeline/estimation/estimator.hpp"),
+            "a room that it must not use");
+  EXPECT_EQ(fault_of_room("estimation", "relative_map/pipeline/paint/image_queue.hpp"), "");
+  EXPECT_EQ(fault_of_room("contract", "relative_map/model/map.hpp"), "");
 }
 
 TEST(Layers, AWrongIncludeIsFound) {

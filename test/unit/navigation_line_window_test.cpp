@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lines/navigation_line_window.hpp"
+#include "relative_map/pipeline/lanes/navigation_line_window.hpp"
 
 #include <gtest/gtest.h>
 

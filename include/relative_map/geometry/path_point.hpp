@@ -23,6 +23,8 @@ using Polyline = std::vector<Point2>;
 /// Whether a path is a lap: its last point is then followed by its first.
 enum class Ends { kOpen, kClosed };
 
+Polyline positions_of(const PathPoints& points);
+
 /// Sets s to the chord length from the first point.
 void compute_arc_length(PathPoints& points);
 

@@ -12,6 +12,9 @@ struct MapParam {
   double default_left_width = 1.75;    ///< [m] half width to the left
   double default_right_width = 1.75;   ///< [m] half width to the right
   double default_speed_limit = 29.06;  ///< [m/s]
+
+  /// [m] where left and right do not matter
+  double default_half_width() const { return 0.5 * (default_left_width + default_right_width); }
 };
 
 struct NavigationLaneParam {

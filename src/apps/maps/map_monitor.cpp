@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "relative_map/pipeline/lines/lane_path.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "relative_map/ros/health/diagnostics.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
 #include "relative_map/ros/messages/message_check.hpp"

@@ -85,4 +85,13 @@ std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double 
   return sentences;
 }
 
+std::vector<std::string> keep_room_beside(std::vector<LanePath>& lanes, std::size_t& current,
+                                          double half_width) {
+  const std::string id = lanes[current].id;
+  sort_left_to_right(lanes);
+  std::vector<std::string> sentences = drop_narrow_lanes(lanes, half_width, id);
+  for (current = 0; lanes[current].id != id;) ++current;
+  return sentences;
+}
+
 }  // namespace relative_map::core

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "relative_map/pipeline/lines/navigation_line_window.hpp"
-
 namespace relative_map::core {
 
 namespace {
@@ -77,19 +75,6 @@ std::variant<std::vector<TrackedLine>, Status> LanesInReach::track(const Vehicle
     tracked.resize(kMaxLanes);
   }
   return tracked;
-}
-
-std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
-                                  const PipelineConfig& config) {
-  std::vector<LanePath> lanes;
-  for (const TrackedLine& found : lines) {
-    lanes.push_back(cut_window(*found.line, found.projection, vehicle.map_from_base,
-                               config.navigation_lane.max_len_from_navigation_line));
-    lanes.back().left_half_width = config.map_param.default_left_width;
-    lanes.back().right_half_width = config.map_param.default_right_width;
-  }
-  sort_left_to_right(lanes);
-  return lanes;
 }
 
 }  // namespace relative_map::core

@@ -210,6 +210,11 @@ void make_priorities_unique(NavigationLines& result) {
 
 }  // namespace
 
+IntakeParam IntakeParam::of(const PipelineConfig& config) {
+  return {config.enable_cyclic_rerouting,
+          std::min(config.map_param.default_left_width, config.map_param.default_right_width)};
+}
+
 std::shared_ptr<const NavigationLines> prepare_navigation_lines(const NavigationInfo& info,
                                                                 const IntakeParam& param) {
   auto result = std::make_shared<NavigationLines>();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "relative_map/pipeline/lines/lane_path.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 
 namespace relative_map {
 

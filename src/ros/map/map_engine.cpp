@@ -33,10 +33,7 @@ MapEngine::MapEngine(const NodeConfig& config, LinkTransforms transforms)
 
 std::shared_ptr<const core::NavigationLines> MapEngine::prepare(const NavigationInfo& message,
                                                                 const core::PipelineConfig& config) {
-  core::IntakeParam param;
-  param.stitch_closed_lines = config.enable_cyclic_rerouting;
-  param.lane_half_width = std::min(config.map_param.default_left_width, config.map_param.default_right_width);
-  return core::prepare_navigation_lines(to_core(message), param);
+  return core::prepare_navigation_lines(to_core(message), core::IntakeParam::of(config));
 }
 
 void MapEngine::set_navigation_lines(std::shared_ptr<const core::NavigationLines> lines) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "relative_map/pipeline/lines/navigation_line_window.hpp"
+#include "relative_map/pipeline/lanes/navigation_line_window.hpp"
 
 namespace relative_map {
 

@@ -9,7 +9,7 @@
 #include "relative_map/model/map.hpp"
 #include "relative_map/pipeline/estimation/kalman_filter.hpp"
 #include "relative_map/pipeline/estimation/offset_profile.hpp"
-#include "relative_map/pipeline/lines/lane_path.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "relative_map/pipeline/lines/navigation_line_tracker.hpp"
 #include "relative_map/pipeline/paint/paint_samples.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "relative_map/pipeline/lines/lane_path.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 
 namespace relative_map::core {
 

@@ -5,8 +5,8 @@
 
 #include "relative_map/model/config.hpp"
 #include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "relative_map/pipeline/lanes/lane_width.hpp"
-#include "relative_map/pipeline/lines/lane_path.hpp"
 
 namespace relative_map::core {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "relative_map/model/config.hpp"
-#include "relative_map/pipeline/lines/lane_path.hpp"
 #include "relative_map/pipeline/lines/navigation_line_tracker.hpp"
 
 namespace relative_map::core {
@@ -36,9 +35,5 @@ class LanesInReach {
   std::shared_ptr<const NavigationLines> lines_;
   std::vector<NavigationLineTracker> trackers_;  ///< one a line
 };
-
-/// The windows of lines in reach, left to right, in the body frame.
-std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
-                                  const PipelineConfig& config);
 
 }  // namespace relative_map::core

@@ -8,6 +8,7 @@
 
 #include "relative_map/geometry/path_point.hpp"
 #include "relative_map/geometry/segment_index.hpp"
+#include "relative_map/model/config.hpp"
 #include "relative_map/model/inputs.hpp"
 
 namespace relative_map::core {
@@ -40,6 +41,10 @@ struct NavigationLines {
 struct IntakeParam {
   bool stitch_closed_lines = true;
   double lane_half_width = 1.75;  ///< [m] ends that are farther apart do not meet
+
+  /// As the map is configured. Of two different half widths the smaller one counts: a lap that is not closed
+  /// ends, one that is closed over to another lane leads there.
+  static IntakeParam of(const PipelineConfig& config);
 };
 
 /// Checks, cleans, indexes and stitches recorded lines. A pure function: run it on any thread.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "relative_map/pipeline/lines/lanes_in_reach.hpp"
 
 namespace relative_map::core {

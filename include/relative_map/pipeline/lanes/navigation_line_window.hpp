@@ -1,7 +1,7 @@
 #pragma once
 
-#include "relative_map/pipeline/lines/lane_path.hpp"
-#include "relative_map/pipeline/lines/navigation_line_tracker.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
+#include "relative_map/pipeline/lines/lanes_in_reach.hpp"
 
 namespace relative_map::core {
 
@@ -11,5 +11,9 @@ namespace relative_map::core {
 /// Closed lines go on across the stitch, as often as the length needs. Half widths are left unset.
 LanePath cut_window(const NavigationLine& line, const LineProjection& projection, const Pose2& map_from_base,
                     double max_length);
+
+/// The windows of lines in reach, left to right, in the body frame.
+std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
+                                  const PipelineConfig& config);
 
 }  // namespace relative_map::core

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lines/navigation_line_window.hpp"
+#include "relative_map/pipeline/lanes/navigation_line_window.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,6 +96,19 @@ LanePath cut_window(const NavigationLine& line, const LineProjection& projection
   if (from_kink || to_kink) compute_geometry(path.points);  // of one side of the kink alone
   if (to_kink) path.remaining = path.points.back().s - path.s_at_vehicle;
   return path;
+}
+
+std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
+                                  const PipelineConfig& config) {
+  std::vector<LanePath> lanes;
+  for (const TrackedLine& found : lines) {
+    lanes.push_back(cut_window(*found.line, found.projection, vehicle.map_from_base,
+                               config.navigation_lane.max_len_from_navigation_line));
+    lanes.back().left_half_width = config.map_param.default_left_width;
+    lanes.back().right_half_width = config.map_param.default_right_width;
+  }
+  sort_left_to_right(lanes);
+  return lanes;
 }
 
 }  // namespace relative_map::core

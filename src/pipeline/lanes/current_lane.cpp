@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lines/current_lane.hpp"
+#include "relative_map/pipeline/lanes/current_lane.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/lines/lane_path.hpp"
+#include "relative_map/pipeline/lanes/lane_path.hpp"
 
 #include <algorithm>
 
@@ -52,13 +52,6 @@ void sort_left_to_right(std::vector<LanePath>& lanes) {
                                     [&](const LanePath& other) { return starts_left_of(*lane, other); });
     std::rotate(place, lane, lane + 1);
   }
-}
-
-Polyline positions_of(const PathPoints& points) {
-  Polyline positions;
-  positions.reserve(points.size());
-  for (const PathPoint& point : points) positions.push_back(point.position);
-  return positions;
 }
 
 }  // namespace relative_map::core

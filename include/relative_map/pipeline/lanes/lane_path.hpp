@@ -37,6 +37,4 @@ void locate_vehicle(LanePath& lane);
 /// By the vehicle's place beside them; a lane that begins ahead by where its start lies beside the others.
 void sort_left_to_right(std::vector<LanePath>& lanes);
 
-Polyline positions_of(const PathPoints& points);
-
 }  // namespace relative_map::core
