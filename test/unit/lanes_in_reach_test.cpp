@@ -23,11 +23,14 @@ TEST(LanesInReach, AreTheBestWhereThereAreTooMany) {
   PipelineConfig config;
   config.navigation_lane.max_distance_to_navigation_line = 100.0;
   std::vector<std::string> remarks;
-  const auto found = lanes.track(test::vehicle_at(Pose2(Point2(50.0, 1.0), 0.0)), config, remarks);
-  const auto* tracked = std::get_if<std::vector<TrackedLine>>(&found);
+  const auto found = lanes.track(test::vehicle_at(Pose2(Point2(50.0, 1.0), 0.0)), config, "", remarks);
+  const auto* tracked = std::get_if<TrackedLines>(&found);
   ASSERT_TRUE(tracked);
-  EXPECT_EQ(tracked->size(), 16u);
-  for (const TrackedLine& line : *tracked) EXPECT_LT(line.line->priority, 16u) << line.line->id;
+  EXPECT_EQ(tracked->lines.size(), 16u);
+  EXPECT_EQ(tracked->current_line().line->id, "0") << "the vehicle is on the worst of them";
+  for (const TrackedLine& line : tracked->lines) {
+    EXPECT_TRUE(line.line->id == "0" || line.line->priority < 15u) << line.line->id;
+  }
   EXPECT_THAT(remarks, Contains(HasSubstr("20 lines are in reach: only the best 16 are used")));
 }
 

@@ -23,6 +23,20 @@ std::vector<std::string> ids_of(const std::vector<LanePath>& lanes) {
   return ids;
 }
 
+/// The vehicle is in the lane `kept`; without one, in the best.
+std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width,
+                                           const std::string& kept = "") {
+  std::size_t current = 0;
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    const bool better = lanes[i].priority < lanes[current].priority;
+    if (kept.empty() ? better : lanes[i].id == kept) current = i;
+  }
+  const std::string id = lanes[current].id;
+  const std::vector<std::string> sentences = make_room(lanes, current, half_width);
+  EXPECT_EQ(lanes.at(current).id, id);
+  return sentences;
+}
+
 TEST(NarrowLanes, AreKeptWhereTheVehicleFits) {
   std::vector<LanePath> lanes = {straight_lane("left", 2.0), straight_lane("right", 0.0, 1)};
   EXPECT_TRUE(drop_narrow_lanes(lanes, kHalfWidth).empty());

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "relative_map/pipeline/lanes/current_lane.hpp"
+#include "relative_map/pipeline/lines/current_lane.hpp"
 #include "relative_map/pipeline/relative_map_pipeline.hpp"
 #include "support/scene.hpp"
 

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#include "relative_map/pipeline/lanes/current_lane.hpp"
+#include "relative_map/pipeline/lines/current_lane.hpp"
 
 namespace relative_map::core {
 
-LaneEstimate Estimator::update(const std::vector<ImageQueue::Image>& images,
-                               const std::vector<TrackedLine>& lines, const TrackedLine& current,
+LaneEstimate Estimator::update(const std::vector<ImageQueue::Image>& images, const TrackedLines& lines,
                                const Tick& tick) {
+  const TrackedLine& current = lines.current_line();
   const PipelineConfig& config = tick.config;
-  lane_.expect_half_width(
-      expected_half_width(lines, current, config.navigation_lane, config.map_param.default_half_width()));
+  lane_.expect_half_width(expected_half_width(lines.lines, current, config.navigation_lane,
+                                              config.map_param.default_half_width()));
   lane_.follow_line(*current.line, current.projection);
   LaneEstimate estimate;
   for (const ImageQueue::Image& image : images) {  // remarks on the newest one

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "relative_map/model/remarks.hpp"
-#include "relative_map/pipeline/lanes/current_lane.hpp"
 #include "relative_map/pipeline/lanes/marker_path.hpp"
 #include "relative_map/pipeline/lanes/narrow_lanes.hpp"
 #include "relative_map/pipeline/lanes/navigation_line_window.hpp"
@@ -36,32 +35,26 @@ std::variant<FoundLanes, Status> EstimatorMethod::find_lanes(const Tick& tick) {
   auto lines = tick.lines_in_reach(tick.at_map_time(estimator_.vehicle(tick.localized)));
   if (auto* none = std::get_if<Status>(&lines)) return lane_of_markers(images, std::move(*none), tick);
   marker_estimator_.reset();
-  return lanes_of_lines(std::get<std::vector<TrackedLine>>(std::move(lines)), images, tick);
+  return lanes_of_lines(std::get<TrackedLines>(std::move(lines)), images, tick);
 }
 
-FoundLanes EstimatorMethod::lanes_of_lines(std::vector<TrackedLine> lines,
-                                           const std::vector<ImageQueue::Image>& images, const Tick& tick) {
-  LaneEstimate estimate = estimator_.update(images, lines, choose_current(lines, tick.current_id), tick);
+FoundLanes EstimatorMethod::lanes_of_lines(TrackedLines lines, const std::vector<ImageQueue::Image>& images,
+                                           const Tick& tick) {
+  LaneEstimate estimate = estimator_.update(images, lines, tick);
   for (const std::string& remark : estimate.remarks) tick.remarks.push_back("lane markers: " + remark);
-  if (!images.empty()) {             // they have moved the vehicle
-    std::vector<std::string> known;  // remarks
-    auto moved = tick.lines.track(estimate.vehicle, tick.config, known);
-    if (auto* again = std::get_if<std::vector<TrackedLine>>(&moved)) lines = std::move(*again);
-  }
+  if (!images.empty()) tick.lines.follow(lines, estimate.vehicle, tick.config);  // they have moved it
 
   FoundLanes found;
   found.vehicle = estimate.vehicle;
+  found.fusion.source = Source::kNavigationLine;
   found.lanes = cut_windows(lines, found.vehicle, tick.config);
+  found.current = lines.current;
   const double vehicle_half_width = tick.config.footprint.half_width;
-  add_new(tick.remarks, drop_narrow_lanes(found.lanes, vehicle_half_width));
-  found.current = choose_current(found.lanes, tick.current_id);
-  const TrackedLine& line = *std::find_if(lines.begin(), lines.end(), [&](const TrackedLine& tracked) {
-    return tracked.line->id == found.lanes[found.current].id;
-  });
-  if (estimator_.move_lane(line, vehicle_half_width, found.lanes[found.current])) {
-    add_new(tick.remarks, keep_room_beside(found.lanes, found.current, vehicle_half_width));
-    estimator_.widen_beside(found.lanes, found.current);
-  }
+  const bool moved =
+      estimator_.move_lane(lines.current_line(), vehicle_half_width, found.lanes[found.current]);
+  add_new(tick.remarks, make_room(found.lanes, found.current, vehicle_half_width));
+  if (!moved) return found;
+  estimator_.widen_beside(found.lanes, found.current);
   found.fusion = std::move(estimate.fusion);
   found.paint = estimate.paint;
   found.paint.from += found.lanes[found.current].s_at_vehicle;

@@ -5,7 +5,6 @@
 #include "relative_map/model/remarks.hpp"
 #include "relative_map/pipeline/fixed_weight/lane_fusion.hpp"
 #include "relative_map/pipeline/fixed_weight/lane_marker_path.hpp"
-#include "relative_map/pipeline/lanes/current_lane.hpp"
 #include "relative_map/pipeline/lanes/narrow_lanes.hpp"
 #include "relative_map/pipeline/lanes/navigation_line_window.hpp"
 
@@ -52,17 +51,20 @@ std::variant<FoundLanes, Status> FixedWeightMethod::find_lanes(const Tick& tick)
     found.lanes.push_back(std::move(markers->path));
     return found;
   }
-  found.lanes = cut_windows(std::get<std::vector<TrackedLine>>(lines), found.vehicle, tick.config);
-  add_new(tick.remarks, drop_narrow_lanes(found.lanes, tick.config.footprint.half_width));
-  found.current = choose_current(found.lanes, tick.current_id);
+  const auto& in_reach = std::get<TrackedLines>(lines);
+  found.lanes = cut_windows(in_reach, found.vehicle, tick.config);
+  found.current = in_reach.current;
   found.fusion.source = Source::kNavigationLine;
-  if (!markers) return found;
-  if (const auto why = trust_within_lane(found.lanes[found.current], *markers)) {
-    tick.remarks.push_back("lane markers: " + *why);
-  } else if (auto fused = fuse(*markers, found.lanes[found.current], tick)) {
+  std::optional<FusionState> fused;
+  if (markers) {
+    const auto why_not = trust_within_lane(found.lanes[found.current], *markers);
+    if (why_not) tick.remarks.push_back("lane markers: " + *why_not);
+    if (!why_not) fused = fuse(*markers, found.lanes[found.current], tick);
+  }
+  add_new(tick.remarks, make_room(found.lanes, found.current, tick.config.footprint.half_width));
+  if (fused) {
     found.fusion = std::move(*fused);
     found.fusion.marker_age = marker_age();
-    add_new(tick.remarks, keep_room_beside(found.lanes, found.current, tick.config.footprint.half_width));
     found.paint = paint_beside(found.lanes[found.current], *markers);
   }
   return found;

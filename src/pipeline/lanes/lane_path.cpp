@@ -37,7 +37,8 @@ void locate_vehicle(LanePath& lane) {
   lane.l = cross(direction, offset);
 }
 
-void sort_left_to_right(std::vector<LanePath>& lanes) {
+void sort_left_to_right(std::vector<LanePath>& lanes, std::size_t& current) {
+  const std::string current_id = lanes[current].id;
   // The vehicle lies left of a lane by l, so the leftmost lane has the smallest l.
   std::stable_sort(lanes.begin(), lanes.end(),
                    [](const LanePath& a, const LanePath& b) { return a.l < b.l; });
@@ -52,6 +53,7 @@ void sort_left_to_right(std::vector<LanePath>& lanes) {
                                     [&](const LanePath& other) { return starts_left_of(*lane, other); });
     std::rotate(place, lane, lane + 1);
   }
+  for (current = 0; lanes[current].id != current_id;) ++current;
 }
 
 }  // namespace relative_map::core

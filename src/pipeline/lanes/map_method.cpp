@@ -2,12 +2,12 @@
 
 namespace relative_map::core {
 
-std::variant<std::vector<TrackedLine>, Status> Tick::lines_in_reach(const VehicleState& vehicle) const {
+std::variant<TrackedLines, Status> Tick::lines_in_reach(const VehicleState& vehicle) const {
   if (config.navigation_lane.lane_source == LaneSource::kPerception) {
     return Status{StatusCode::kMarkersUnusable,
                   "lane_source is PERCEPTION, and the lane markers are unusable"};
   }
-  return lines.track(vehicle, config, remarks);
+  return lines.track(vehicle, config, current_id, remarks);
 }
 
 }  // namespace relative_map::core

@@ -11,28 +11,69 @@ namespace {
 
 constexpr double kSearchStep = 1.0;  // [m] between the places where narrowness is looked for
 constexpr double kShortestLane =
-    30.0;  // [m] ahead of the vehicle; what is left of a lane must be worth a change
+    30.0;                           // [m] ahead of the vehicle; what is left of a lane must be worth a change
+constexpr double kOtherRoad = 0.5;  // [rad] beside the vehicle: more than any ramp that leaves or joins
+constexpr double kCrossing = 0.35;  // [rad] where they meet: more than lanes that become one
 
-/// Arc length at which `lane` first comes too near to `better`; none: it never does.
-std::optional<double> first_narrow_place(const LanePath& lane, const LanePath& better, double spacing) {
-  const Polyline centerline = positions_of(better.points);
-  PolylineWalker walker(centerline);
-  const double step = std::min(kSearchStep, 0.5 * spacing);
-  double s = 0.0;
-  std::size_t last = 0;
-  for (std::size_t i = 0; i + 1 < lane.points.size(); ++i) {
-    const PathPoint &a = lane.points[i], &b = lane.points[i + 1];
-    while (s < b.s) {
-      const Point2 place = a.position + (s - a.s) / (b.s - a.s) * (b.position - a.position);
-      const Foot foot = walker.next(place, std::max<std::size_t>(1, i - last));
-      last = i;
-      const double distance = std::sqrt(foot.squared_distance);
-      if (!walker.beyond_end(foot) && distance < spacing) return s;
-      s += std::max(step, distance - spacing);  // it comes no nearer by more than the way between
+/// A place of a lane beside a better one.
+struct Place {
+  double s = 0.0;         ///< [m] along the lane
+  double turned = 0.0;    ///< [rad] of it from the better one
+  bool beside = false;    ///< false: past an end of the better one
+  double distance = 0.0;  ///< [m] between the two
+};
+
+/// The better lane, to be looked at from others.
+class BetterLane {
+ public:
+  explicit BetterLane(const LanePath& lane) : centerline_(positions_of(lane.points)), id_(lane.id) {}
+
+  const std::string& id() const { return id_; }
+  /// Arc length at which `lane` first comes nearer than `spacing` [m]; none: it never does.
+  std::optional<Place> first_nearer_place(const LanePath& lane, double spacing) const {
+    PolylineWalker walker(centerline_, nearest_segment(lane.points.front().position));
+    const double step = std::min(kSearchStep, 0.5 * spacing);
+    double s = 0.0;
+    std::size_t last = 0;
+    for (std::size_t i = 0; i + 1 < lane.points.size(); ++i) {
+      while (s < lane.points[i + 1].s) {
+        const Place place = look(walker, lane, i, s, std::max<std::size_t>(1, i - last));
+        last = i;
+        if (place.beside && place.distance < spacing) return place;
+        s += std::max(step, place.distance - spacing);  // it comes no nearer by more than the way between
+      }
     }
+    return std::nullopt;
   }
-  return std::nullopt;
-}
+  /// Where the vehicle is beside `lane`, or where that begins or ends.
+  Place beside_vehicle(const LanePath& lane) const {
+    const double s = std::clamp(lane.s_at_vehicle, 0.0, lane.points.back().s);
+    std::size_t i = 0;
+    while (i + 2 < lane.points.size() && lane.points[i + 1].s <= s) ++i;
+    PolylineWalker walker(centerline_, nearest_segment(lane.points[i].position));
+    return look(walker, lane, i, s, 1);
+  }
+
+ private:
+  std::size_t nearest_segment(const Point2& point) const {
+    const auto nearest =
+        std::min_element(centerline_.begin(), centerline_.end(), [&](const Point2& a, const Point2& b) {
+          return (a - point).squaredNorm() < (b - point).squaredNorm();
+        });
+    return std::min(static_cast<std::size_t>(nearest - centerline_.begin()), centerline_.size() - 2);
+  }
+  Place look(PolylineWalker& walker, const LanePath& lane, std::size_t i, double s, std::size_t steps) const {
+    const PathPoint &a = lane.points[i], &b = lane.points[i + 1];
+    const Point2 along = b.position - a.position;
+    const Foot foot = walker.next(a.position + (s - a.s) / (b.s - a.s) * along, steps);
+    const Point2 other = centerline_[foot.segment + 1] - centerline_[foot.segment];
+    return {s, std::atan2(cross(other, along), other.dot(along)), !walker.beyond_end(foot),
+            std::sqrt(foot.squared_distance)};
+  }
+
+  Polyline centerline_;
+  std::string id_;
+};
 
 /// Ends a lane before `s` [m]; false leaves it as it is: what remained of it ahead would be too short.
 bool cut_short(LanePath& lane, double s) {
@@ -44,53 +85,64 @@ bool cut_short(LanePath& lane, double s) {
   return true;
 }
 
-std::string narrow_sentence(const LanePath& lane, const LanePath& better, const char* verb, double ahead) {
-  std::ostringstream sentence;
-  sentence.precision(3);
-  sentence << "line '" << lane.id << "' " << verb << ": " << std::max(0.0, ahead)
-           << " m ahead it comes so near to '" << better.id << "' that the vehicle does not fit";
-  return sentence.str();
+template <class... Parts>
+std::string sentence(const LanePath& lane, const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "line '" << lane.id << "' ";
+  (text << ... << parts);
+  return text.str();
 }
 
-/// One pass over the neighbours; true if a lane was taken out and the neighbours are others now.
-bool drop_one(std::vector<LanePath>& lanes, double half_width, const std::string& kept,
+double degrees(double angle) {
+  return std::abs(angle) * 180.0 / kPi;
+}
+
+/// Whether a lane has room beside a better one; else it is cut short, or there is none at all. What it loses
+/// is told in `sentences`.
+bool has_room(LanePath& lane, const BetterLane& better, double half_width,
               std::vector<std::string>& sentences) {
-  for (std::size_t i = 0; i + 1 < lanes.size(); ++i) {
-    const bool right_is_better =
-        lanes[i].priority > lanes[i + 1].priority ? lanes[i].id != kept : lanes[i + 1].id == kept;
-    const std::size_t worse = right_is_better ? i : i + 1;
-    const LanePath& better = lanes[worse == i ? i + 1 : i];
-    LanePath& lane = lanes[worse];
-    const std::optional<double> narrow = first_narrow_place(lane, better, 2.0 * half_width);
-    if (!narrow) continue;
-    const double ahead = *narrow - lane.s_at_vehicle;
-    if (cut_short(lane, *narrow)) {
-      sentences.push_back(narrow_sentence(lane, better, "is cut short", ahead));
-      continue;
-    }
-    sentences.push_back(narrow_sentence(lane, better, "is left out", ahead));
-    lanes.erase(lanes.begin() + static_cast<std::ptrdiff_t>(worse));
-    return true;
+  const std::optional<Place> narrow = better.first_nearer_place(lane, 2.0 * half_width);
+  if (!narrow) return true;
+  const double ahead = std::max(0.0, narrow->s - lane.s_at_vehicle);
+  if (std::abs(narrow->turned) > kCrossing) {
+    sentences.push_back(sentence(lane, "is left out: ", ahead, " m ahead it crosses '", better.id(), "', by ",
+                                 degrees(narrow->turned), " degrees"));
+    return false;
   }
-  return false;
+  const bool cut = cut_short(lane, narrow->s);
+  sentences.push_back(sentence(lane, cut ? "is cut short: " : "is left out: ", ahead,
+                               " m ahead it comes so near to '", better.id(),
+                               "' that the vehicle does not fit"));
+  return cut;
 }
 
 }  // namespace
 
-std::vector<std::string> drop_narrow_lanes(std::vector<LanePath>& lanes, double half_width,
-                                           const std::string& kept) {
+std::vector<std::string> make_room(std::vector<LanePath>& lanes, std::size_t& current, double half_width) {
   std::vector<std::string> sentences;
-  while (drop_one(lanes, half_width, kept, sentences)) {
+  std::swap(lanes.front(), lanes[current]);
+  std::sort(lanes.begin() + 1, lanes.end(),
+            [](const LanePath& a, const LanePath& b) { return a.priority < b.priority; });
+  std::vector<BetterLane> better;  // of those that stay
+  std::vector<LanePath> kept;
+  for (LanePath& lane : lanes) {
+    bool stays = true;
+    if (!better.empty()) {
+      const Place beside = better.front().beside_vehicle(lane);
+      stays = !beside.beside || std::abs(beside.turned) <= kOtherRoad;
+      if (!stays)
+        sentences.push_back(sentence(lane, "is left out: it is another road's, ", degrees(beside.turned),
+                                     " degrees aside of '", better.front().id(), "'"));
+    }
+    for (const BetterLane& other : better) stays = stays && has_room(lane, other, half_width, sentences);
+    if (!stays) continue;
+    better.emplace_back(lane);
+    kept.push_back(std::move(lane));
   }
-  return sentences;
-}
-
-std::vector<std::string> keep_room_beside(std::vector<LanePath>& lanes, std::size_t& current,
-                                          double half_width) {
-  const std::string id = lanes[current].id;
-  sort_left_to_right(lanes);
-  std::vector<std::string> sentences = drop_narrow_lanes(lanes, half_width, id);
-  for (current = 0; lanes[current].id != id;) ++current;
+  lanes = std::move(kept);
+  current = 0;
+  sort_left_to_right(lanes, current);
   return sentences;
 }
 

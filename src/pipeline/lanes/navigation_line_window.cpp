@@ -98,16 +98,16 @@ LanePath cut_window(const NavigationLine& line, const LineProjection& projection
   return path;
 }
 
-std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
+std::vector<LanePath> cut_windows(const TrackedLines& lines, const VehicleState& vehicle,
                                   const PipelineConfig& config) {
   std::vector<LanePath> lanes;
-  for (const TrackedLine& found : lines) {
+  lanes.reserve(lines.lines.size());
+  for (const TrackedLine& found : lines.lines) {
     lanes.push_back(cut_window(*found.line, found.projection, vehicle.map_from_base,
                                config.navigation_lane.max_len_from_navigation_line));
     lanes.back().left_half_width = config.map_param.default_left_width;
     lanes.back().right_half_width = config.map_param.default_right_width;
   }
-  sort_left_to_right(lanes);
   return lanes;
 }
 

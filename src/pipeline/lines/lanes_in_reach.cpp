@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "relative_map/pipeline/lines/current_lane.hpp"
+
 namespace relative_map::core {
 
 namespace {
@@ -50,9 +52,10 @@ std::vector<TrackedLine> LanesInReach::track_all(const VehicleState& vehicle, do
   return found;
 }
 
-std::variant<std::vector<TrackedLine>, Status> LanesInReach::track(const VehicleState& vehicle,
-                                                                   const PipelineConfig& config,
-                                                                   std::vector<std::string>& remarks) {
+std::variant<TrackedLines, Status> LanesInReach::track(const VehicleState& vehicle,
+                                                       const PipelineConfig& config,
+                                                       const std::string& current_id,
+                                                       std::vector<std::string>& remarks) {
   if (!lines_) return Status{StatusCode::kNoNavigationLine, "no navigation line received yet"};
   if (lines_->lines.empty()) {
     Status status{StatusCode::kNoNavigationLine, "no usable navigation line"};
@@ -63,18 +66,37 @@ std::variant<std::vector<TrackedLine>, Status> LanesInReach::track(const Vehicle
   }
 
   std::vector<LineDrop> drops;
-  std::vector<TrackedLine> tracked =
-      track_all(vehicle, config.navigation_lane.max_distance_to_navigation_line, drops);
+  TrackedLines tracked{track_all(vehicle, config.navigation_lane.max_distance_to_navigation_line, drops)};
+  std::vector<TrackedLine>& lines = tracked.lines;
   tell(drops, remarks);
-  if (tracked.empty()) return nothing_left(drops);
-  if (tracked.size() > kMaxLanes) {
-    remarks.push_back(std::to_string(tracked.size()) + " lines are in reach: only the best " +
+  if (lines.empty()) return nothing_left(drops);
+  tracked.current = choose_current(lines, current_id);
+  if (lines.size() > kMaxLanes) {
+    remarks.push_back(std::to_string(lines.size()) + " lines are in reach: only the best " +
                       std::to_string(kMaxLanes) + " are used");
-    std::sort(tracked.begin(), tracked.end(),
+    std::swap(lines.front(), lines[tracked.current]);
+    tracked.current = 0;
+    std::sort(lines.begin() + 1, lines.end(),
               [](const TrackedLine& a, const TrackedLine& b) { return a.line->priority < b.line->priority; });
-    tracked.resize(kMaxLanes);
+    lines.resize(kMaxLanes);
   }
   return tracked;
+}
+
+void LanesInReach::follow(TrackedLines& tracked, const VehicleState& vehicle, const PipelineConfig& config) {
+  TrackedLines moved;
+  for (std::size_t i = 0; i < tracked.lines.size(); ++i) {
+    const NavigationLine& line = *tracked.lines[i].line;
+    const auto place =
+        tracker_of(line).track(line, vehicle, config.navigation_lane.max_distance_to_navigation_line);
+    const auto* projection = std::get_if<LineProjection>(&place);
+    if (i == tracked.current) {
+      if (!projection) return;
+      moved.current = moved.lines.size();
+    }
+    if (projection) moved.lines.push_back({&line, *projection});
+  }
+  tracked = std::move(moved);
 }
 
 }  // namespace relative_map::core

@@ -12,7 +12,7 @@ namespace relative_map::core {
 /// What the estimator has to say after the images of a tick.
 struct LaneEstimate {
   VehicleState vehicle;  ///< where it is, at the time of the map
-  FusionState fusion;    ///< the offset of the lane from the line, and how much paint backs it
+  FusionState fusion;    ///< the offset of the lane from the line, and how much paint backs it: FUSED, if any
   SeenPaint paint;       ///< beside the lane; from and to [m] are counted from the vehicle
   std::vector<std::string> remarks;
 };
@@ -28,9 +28,9 @@ class Estimator {
   /// `localized` without what is known to be wrong with it.
   VehicleState vehicle(const VehicleState& localized) const { return lane_.corrected(localized); }
   /// Once a tick: what its images, oldest first, say of the lane that the vehicle is in. `lines` are those in
-  /// reach, seen from vehicle(localized) at the time of the map; `current` is the one that the vehicle is on.
-  LaneEstimate update(const std::vector<ImageQueue::Image>& images, const std::vector<TrackedLine>& lines,
-                      const TrackedLine& current, const Tick& tick);
+  /// reach, seen from vehicle(localized) at the time of the map.
+  LaneEstimate update(const std::vector<ImageQueue::Image>& images, const TrackedLines& lines,
+                      const Tick& tick);
   /// Moves the current lane, the window of `line`, to where it is beside that line, and sets its half widths;
   /// returns whether it did: not without anything known of this line.
   bool move_lane(const TrackedLine& line, double least_half_width, LanePath& lane) const {

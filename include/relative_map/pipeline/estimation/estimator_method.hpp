@@ -19,7 +19,7 @@ class EstimatorMethod : public MapMethod {
   std::variant<FoundLanes, Status> find_lanes(const Tick& tick) override;
 
  private:
-  FoundLanes lanes_of_lines(std::vector<TrackedLine> lines, const std::vector<ImageQueue::Image>& images,
+  FoundLanes lanes_of_lines(TrackedLines lines, const std::vector<ImageQueue::Image>& images,
                             const Tick& tick);
   /// Where there is no line; `otherwise`, if there is no paint either.
   std::variant<FoundLanes, Status> lane_of_markers(const std::vector<ImageQueue::Image>& images,

@@ -35,6 +35,7 @@ struct LanePath {
 void locate_vehicle(LanePath& lane);
 
 /// By the vehicle's place beside them; a lane that begins ahead by where its start lies beside the others.
-void sort_left_to_right(std::vector<LanePath>& lanes);
+/// `current` goes with its lane.
+void sort_left_to_right(std::vector<LanePath>& lanes, std::size_t& current);
 
 }  // namespace relative_map::core

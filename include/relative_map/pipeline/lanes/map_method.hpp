@@ -28,7 +28,7 @@ struct Tick {
     return config.predict_to_tick ? motion.carried_to(now, vehicle) : vehicle;
   }
   /// The lines that the vehicle can be on, or why there is none.
-  std::variant<std::vector<TrackedLine>, Status> lines_in_reach(const VehicleState& vehicle) const;
+  std::variant<TrackedLines, Status> lines_in_reach(const VehicleState& vehicle) const;
 };
 
 /// The lanes around the vehicle: all that a map is made of.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "relative_map/pipeline/lanes/lane_path.hpp"
-#include "relative_map/pipeline/lines/lanes_in_reach.hpp"
+#include "relative_map/pipeline/lines/tracked_line.hpp"
 
 namespace relative_map::core {
 
@@ -12,8 +12,8 @@ namespace relative_map::core {
 LanePath cut_window(const NavigationLine& line, const LineProjection& projection, const Pose2& map_from_base,
                     double max_length);
 
-/// The windows of lines in reach, left to right, in the body frame.
-std::vector<LanePath> cut_windows(const std::vector<TrackedLine>& lines, const VehicleState& vehicle,
+/// The windows of the lines, in their order, in the body frame.
+std::vector<LanePath> cut_windows(const TrackedLines& lines, const VehicleState& vehicle,
                                   const PipelineConfig& config);
 
 }  // namespace relative_map::core
