@@ -20,12 +20,13 @@ const std::map<std::string, std::set<std::string>> kMayUse = {
     {"geometry", {"geometry"}},
     {"model", {"geometry", "model"}},
     {"pipeline", {"geometry", "model", "pipeline"}},
+    {"route", {"geometry", "model", "route"}},
     {"io", {"geometry", "model", "io"}},
     {"simulation", {"geometry", "model", "pipeline", "io", "simulation"}},
     {"tools", {"geometry", "model", "pipeline", "io", "simulation", "tools"}},
-    {"ros", {"geometry", "model", "pipeline", "io", "ros"}},
-    {"doctor", {"geometry", "model", "pipeline", "io", "ros", "doctor"}},
-    {"apps", {"geometry", "model", "pipeline", "io", "simulation", "tools", "ros", "doctor", "apps"}},
+    {"ros", {"geometry", "model", "pipeline", "route", "io", "ros"}},
+    {"doctor", {"geometry", "model", "pipeline", "route", "io", "ros", "doctor"}},
+    {"apps", {"geometry", "model", "pipeline", "route", "io", "simulation", "tools", "ros", "doctor", "apps"}},
 };
 /// The rooms of the tick, in the order in which each may use those before it.
 const std::vector<std::string> kRooms = {"motion",     "lines",        "paint",   "lanes",
