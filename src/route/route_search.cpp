@@ -311,7 +311,7 @@ SearchResult RouteSearch::find(const SearchRequest& request) {
   Route route;
   route.frame_id = network_->frame_id();
   route.map_version = network_->map_version();
-  route.roads = roads_of(*network_, way);
+  route.roads = roads_of(*network_, way, closed);
   for (const LanePosition& place : request.places) {
     const Point2 position = network_->lane(*network_->find(place.lane_id)).line.point_at(place.s);
     route.waypoints.push_back({place.lane_id, place.s, position});

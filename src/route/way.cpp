@@ -60,13 +60,15 @@ std::vector<Row> rows_of(const Way& way) {
   return rows;
 }
 
-void lengthen_ahead(const LaneNetwork& network, Row& row, const Row& next) {
+void lengthen_ahead(const LaneNetwork& network, const std::set<std::size_t>& closed, Row& row,
+                    const Row& next) {
   for (bool longer = true; longer;) {
     longer = false;
     const LaneNetwork::Lane& last = network.lane(row.pieces.back().lane);
     if (row.pieces.back().end < last.length()) return;  // it ends in its lane, beside the destination
     for (const std::size_t lane : last.successors) {
-      if (has_lane(row, lane) || !leads_to(network, lane, row.leave, next)) continue;
+      if (closed.count(lane) > 0 || has_lane(row, lane) || !leads_to(network, lane, row.leave, next))
+        continue;
       row.pieces.push_back({lane, 0.0, network.lane(lane).length()});
       longer = true;
       break;
@@ -74,12 +76,14 @@ void lengthen_ahead(const LaneNetwork& network, Row& row, const Row& next) {
   }
 }
 
-void lengthen_back(const LaneNetwork& network, Row& row, const Row& before) {
+void lengthen_back(const LaneNetwork& network, const std::set<std::size_t>& closed, Row& row,
+                   const Row& before) {
   for (bool longer = true; longer;) {
     longer = false;
     if (row.pieces.front().start > 0.0) return;
     for (const std::size_t lane : network.lane(row.pieces.front().lane).predecessors) {
-      if (has_lane(row, lane) || !reached_from(network, before, before.leave, lane)) continue;
+      if (closed.count(lane) > 0 || has_lane(row, lane) || !reached_from(network, before, before.leave, lane))
+        continue;
       row.pieces.insert(row.pieces.begin(), {lane, 0.0, network.lane(lane).length()});
       ++row.first;
       ++row.end;
@@ -126,10 +130,11 @@ bool may_change(const LaneNetwork& network, std::size_t from, std::size_t to, Ch
   return crossable(side == ChangeLane::kLeft ? here.left_paint : here.right_paint);
 }
 
-std::vector<RouteRoad> roads_of(const LaneNetwork& network, const Way& way) {
+std::vector<RouteRoad> roads_of(const LaneNetwork& network, const Way& way,
+                                const std::set<std::size_t>& closed) {
   std::vector<Row> rows = rows_of(way);
-  for (std::size_t i = rows.size() - 1; i > 0; --i) lengthen_ahead(network, rows[i - 1], rows[i]);
-  for (std::size_t i = 1; i < rows.size(); ++i) lengthen_back(network, rows[i], rows[i - 1]);
+  for (std::size_t i = rows.size() - 1; i > 0; --i) lengthen_ahead(network, closed, rows[i - 1], rows[i]);
+  for (std::size_t i = 1; i < rows.size(); ++i) lengthen_back(network, closed, rows[i], rows[i - 1]);
 
   std::vector<RouteRoad> roads;
   const auto add_single = [&](const Row& row, std::size_t piece) {

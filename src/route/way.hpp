@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "relative_map/model/route.hpp"
@@ -21,7 +22,9 @@ using Way = std::vector<WayStep>;
 bool may_change(const LaneNetwork& network, std::size_t from, std::size_t to, ChangeLane side);
 
 /// The roads of a way: a stretch with lane changes in it is one road with a passage for each lane row, as
-/// long as the rows run side by side; every other lane is a road of its own.
-std::vector<RouteRoad> roads_of(const LaneNetwork& network, const Way& way);
+/// long as the rows run side by side; every other lane is a road of its own. No row is made longer over a
+/// closed lane.
+std::vector<RouteRoad> roads_of(const LaneNetwork& network, const Way& way,
+                                const std::set<std::size_t>& closed);
 
 }  // namespace relative_map::core
