@@ -83,9 +83,10 @@ std::vector<SceneMaker> scene_makers(const BenchmarkOptions& options) {
 }  // namespace
 
 BenchmarkResult run_benchmark(const BenchmarkOptions& options, const DriveObserver& observer) {
+  std::vector<AccuracyMethod> known = accuracy_methods();
+  if (!options.methods.empty()) known.push_back(reference_method());  // on demand only
   const auto methods = selected(
-      accuracy_methods(), options.methods, [](const AccuracyMethod& method) { return method.name; },
-      "method");
+      known, options.methods, [](const AccuracyMethod& method) { return method.name; }, "method");
 
   BenchmarkResult result;
   for (const SceneMaker& make : scene_makers(options)) {
@@ -99,7 +100,7 @@ BenchmarkResult run_benchmark(const BenchmarkOptions& options, const DriveObserv
       for (std::size_t i = 0; i < methods.size(); ++i) {
         if (scene.lines.empty() && !methods[i].deliver_markers) continue;
         started = std::chrono::steady_clock::now();
-        const auto maps = map_drive(drive, methods[i].config(scene.lane_source), methods[i].deliver_markers);
+        const auto maps = map_drive(drive, methods[i], scene.lane_source);
         result.mapping_time += seconds_since(started);
         result.mapped += scene.duration;
         rows[i].scene = scene.name;

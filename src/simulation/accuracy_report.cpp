@@ -124,7 +124,11 @@ void write_table(const BenchmarkResult& result, std::ostream& out) {
          << "jitter_30"
          << "usable"
          << "violations"
-         << "cost";
+         << "cost"
+         << "consistent"
+         << "worst_second"
+         << "painted"
+         << "markers_alone";
   }
   for (const std::vector<AccuracyRow>* rows : {&result.rows, &result.totals}) {
     for (const AccuracyRow& row : *rows) {
@@ -134,7 +138,8 @@ void write_table(const BenchmarkResult& result, std::ostream& out) {
       for (const ErrorStatistics& error : row.center) line << error.percentile_95();
       line << row.boundary.rms() << row.half_width.rms() << row.heading.rms() << row.jitter_10.rms()
            << row.jitter_30.rms() << row.usable_share() << static_cast<double>(row.violations)
-           << row.cost.median();
+           << row.cost.median() << row.consistent_share() << row.worst_second << row.painted_share()
+           << (row.group == SceneGroup::kMarkersAlone ? 1.0 : 0.0);
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include "relative_map/pipeline/contract/map_check.hpp"
 #include "relative_map/pipeline/relative_map_pipeline.hpp"
+#include "relative_map/simulation/reference_filter.hpp"
 
 namespace relative_map::core {
 
@@ -14,25 +15,57 @@ namespace {
 constexpr Time kTickPeriod = std::chrono::milliseconds(100);
 constexpr Time kSettleTime = std::chrono::seconds(1);
 
-void deliver(const Delivery& delivery, bool with_markers, RelativeMapPipeline& pipeline) {
-  if (const auto* localization = std::get_if<Localization>(&delivery.message)) {
-    pipeline.set_localization(*localization);
-  } else if (const auto* chassis = std::get_if<Chassis>(&delivery.message)) {
-    pipeline.set_chassis(*chassis);
-  } else if (with_markers) {
-    pipeline.set_lane_markers(std::get<LaneMarkers>(delivery.message));
-  }
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string remarks_of(const RelativeMap& map, const RelativeMapPipeline& pipeline) {
-  std::string text = map.status.message;
-  for (const std::string& remark : pipeline.remarks()) text += (text.empty() ? "" : "; ") + remark;
-  return text;
-}
+/// As the node does.
+class PipelineMapMaker : public MapMaker {
+ public:
+  PipelineMapMaker(const NavigationInfo& navigation, const PipelineConfig& config, bool deliver_markers)
+      : pipeline_(std::make_shared<PipelineConfig>(config)),
+        deliver_markers_(deliver_markers),
+        context_{config.base_frame, std::nullopt} {
+    pipeline_.set_navigation_lines(prepare_navigation_lines(navigation, IntakeParam::of(config)));
+  }
+
+  void deliver(const Delivery& delivery) override {
+    if (const auto* localization = std::get_if<Localization>(&delivery.message)) {
+      pipeline_.set_localization(*localization);
+    } else if (const auto* chassis = std::get_if<Chassis>(&delivery.message)) {
+      pipeline_.set_chassis(*chassis);
+    } else if (deliver_markers_) {
+      pipeline_.set_lane_markers(std::get<LaneMarkers>(delivery.message));
+    }
+  }
+
+  RelativeMap tick(Time now) override {
+    RelativeMap map = pipeline_.tick(now);
+    status_ = map.status.message;
+    return map;
+  }
+
+  std::string remarks() const override {
+    std::string text = status_;
+    for (const std::string& remark : pipeline_.remarks()) text += (text.empty() ? "" : "; ") + remark;
+    return text;
+  }
+
+  std::vector<std::string> violations(const RelativeMap& map) override {
+    std::vector<std::string> sentences;
+    for (const Violation& violation : check_map(map, context_)) {
+      sentences.push_back(violation.row + ": " + violation.what);
+    }
+    context_.previous_sequence_num = map.sequence_num;
+    return sentences;
+  }
+
+ private:
+  RelativeMapPipeline pipeline_;
+  bool deliver_markers_;
+  MapContext context_;
+  std::string status_;
+};
 
 }  // namespace
 
@@ -53,37 +86,48 @@ std::vector<AccuracyMethod> accuracy_methods() {
   return known;
 }
 
-std::vector<MeasuredMap> map_drive(const RecordedDrive& drive, const PipelineConfig& config,
-                                   bool deliver_markers) {
-  RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>(config));
-  pipeline.set_navigation_lines(prepare_navigation_lines(drive.navigation, IntakeParam::of(config)));
+AccuracyMethod reference_method() {
+  AccuracyMethod method;
+  method.name = "filter";
+  method.is_filter = true;
+  return method;
+}
 
+std::vector<MeasuredMap> map_drive(const RecordedDrive& drive, MapMaker& maker) {
   std::vector<MeasuredMap> maps;
   AccuracyMeter meter(drive);
-  MapContext context{config.base_frame, std::nullopt};
   auto delivery = drive.deliveries.begin();
   for (Time now = drive.start; now <= drive.end; now += kTickPeriod) {
     const auto started = std::chrono::steady_clock::now();
-    for (; delivery != drive.deliveries.end() && delivery->time <= now; ++delivery) {
-      deliver(*delivery, deliver_markers, pipeline);
-    }
-    const RelativeMap map = pipeline.tick(now);
-    const double cost = seconds_since(started);
-    const std::vector<Violation> violations = check_map(map, context);
-    context.previous_sequence_num = map.sequence_num;
+    for (; delivery != drive.deliveries.end() && delivery->time <= now; ++delivery) maker.deliver(*delivery);
+    const RelativeMap map = maker.tick(now);
     MeasuredMap measured;
+    measured.cost = seconds_since(started);
     measured.time = to_seconds(now - drive.start);
     measured.errors = meter.measure(map);
-    measured.violations = violations.size();
-    measured.cost = cost;
     measured.painted = map.fusion.source == Source::kFused || map.fusion.source == Source::kLaneMarkers;
     measured.claimed = map.fusion.lateral_offset.stddev;
-    measured.remarks = remarks_of(map, pipeline);
-    if (!violations.empty()) measured.violation = violations.front().row + ": " + violations.front().what;
+    measured.remarks = maker.remarks();
+    const std::vector<std::string> violations = maker.violations(map);
+    measured.violations = violations.size();
+    if (!violations.empty()) measured.violation = violations.front();
     if (now - drive.start < kSettleTime) measured.errors = MapErrors();
     maps.push_back(measured);
   }
   return maps;
+}
+
+std::vector<MeasuredMap> map_drive(const RecordedDrive& drive, const PipelineConfig& config,
+                                   bool deliver_markers) {
+  PipelineMapMaker maker(drive.navigation, config, deliver_markers);
+  return map_drive(drive, maker);
+}
+
+std::vector<MeasuredMap> map_drive(const RecordedDrive& drive, const AccuracyMethod& method,
+                                   LaneSource lane_source) {
+  if (!method.is_filter) return map_drive(drive, method.config(lane_source), method.deliver_markers);
+  ReferenceMapMaker maker(drive.navigation);
+  return map_drive(drive, maker);
 }
 
 }  // namespace relative_map::core

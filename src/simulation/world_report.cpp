@@ -11,7 +11,8 @@ namespace relative_map::core {
 namespace {
 
 constexpr std::size_t kAt10 = 2, kAt30 = 4;  // of kErrorDistances
-constexpr double kWorse = 0.01;              // [m] by which the line alone may be better
+constexpr double kWorse = 0.01;              // [m] by which what is simpler may be better
+constexpr double kHonest = 0.99;             // share within three standard deviations
 
 /// As printf does.
 template <class... Values>
@@ -31,54 +32,71 @@ const AccuracyRow* find(const BenchmarkResult& result, const std::string& scene,
 }
 
 std::string errors_of(const AccuracyRow* row) {
-  if (row == nullptr) return "    -     -      -  ";
-  return text("%5.3f %5.3f %6.2f ", row->center[kAt10].rms(), row->center[kAt30].rms(),
+  if (row == nullptr) return "     -     -      - ";
+  return text(" %5.3f %5.3f %6.2f ", row->center[kAt10].rms(), row->center[kAt30].rms(),
               100.0 * row->usable_share());
 }
 
 std::string trust_of(const AccuracyRow* row) {
-  if (row == nullptr) return "    -      -     -  ";
+  if (row == nullptr) return "     -     -      - ";
   const std::string consistent =
-      row->consistent_of == 0 ? "    - " : text("%6.2f", 100.0 * row->consistent_share());
+      row->consistent_of == 0 ? "     -" : text("%6.2f", 100.0 * row->consistent_share());
   return consistent + text(" %5.2f %6.1f ", row->worst_second, 100.0 * row->painted_share());
 }
 
+bool worse(const AccuracyRow* row, const AccuracyRow* other) {
+  if (row == nullptr || other == nullptr) return false;
+  return row->center[kAt10].rms() > other->center[kAt10].rms() + kWorse ||
+         row->center[kAt30].rms() > other->center[kAt30].rms() + kWorse;
+}
+
+/// How the methods do in one world.
+struct WorldRows {
+  const AccuracyRow *estimator, *line, *filter, *alone, *filter_alone;
+};
+
 /// What is not as it should be.
-std::string verdict_of(const AccuracyRow* estimator, const AccuracyRow* line, const AccuracyRow* alone) {
+std::string verdict_of(const WorldRows& rows) {
   std::string verdict;
   const auto add = [&](bool fault, const char* name) {
     if (fault) verdict += (verdict.empty() ? "" : ", ") + std::string(name);
   };
-  if (estimator != nullptr && line != nullptr) {
-    add(estimator->center[kAt10].rms() > line->center[kAt10].rms() + kWorse ||
-            estimator->center[kAt30].rms() > line->center[kAt30].rms() + kWorse,
-        "worse than the line");
-  }
-  add(estimator != nullptr && estimator->consistent_share() < 0.99, "too sure");
-  add(alone != nullptr && alone->consistent_share() < 0.99, "too sure alone");
-  add((estimator != nullptr && estimator->violations > 0) || (alone != nullptr && alone->violations > 0),
-      "breaks the contract");
+  const auto broken = [](const AccuracyRow* row) { return row != nullptr && row->violations > 0; };
+  const auto too_sure = [](const AccuracyRow* row) {
+    return row != nullptr && row->consistent_share() < kHonest;
+  };
+  add(worse(rows.estimator, rows.line), "worse than the line");
+  add(worse(rows.estimator, rows.filter), "than the filter");
+  add(too_sure(rows.estimator), "too sure");
+  add(worse(rows.alone, rows.filter_alone), "alone worse than the filter");
+  add(too_sure(rows.alone), "too sure alone");
+  add(broken(rows.estimator) || broken(rows.alone), "breaks the contract");
   return verdict;
 }
 
 }  // namespace
 
 void print_worlds(const BenchmarkResult& result, std::ostream& out) {
-  out << text("%-21s|%-40s|%-20s|%-40s|\n", "", " estimator", " line alone", " markers alone")
-      << text("%-21s|", "world") << "  10 m  30 m usable  in 3s worst  paint |  10 m  30 m usable |"
-      << "  10 m  30 m usable  in 3s worst  paint |\n"
-      << text("%-21s|", "") << "   [m]   [m]    [%]    [%]   [m]    [%] |   [m]   [m]    [%] |"
-      << "   [m]   [m]    [%]    [%]   [m]    [%] |\n";
+  const std::string errors = "  10 m  30 m usable ", trust = " in 3s worst  paint ",
+                    error_units = "   [m]   [m]    [%] ", trust_units = "   [%]   [m]    [%] ";
+  const auto head = [&](const char* name, const std::string& first, const std::string& second) {
+    out << text("%-21s|", name) << first << second << "|" << first << "|" << first << "|" << first << second
+        << "|" << first << "|\n";
+  };
+  out << text("%-21s|%-40s|%-20s|%-20s|%-40s|%-20s|\n", "", " estimator", " line alone", " 4-state filter",
+              " estimator, markers alone", " filter, alone");
+  head("world", errors, trust);
+  head("", error_units, trust_units);
   std::string last;
   for (const AccuracyRow& row : result.rows) {
     if (row.scene == last) continue;
     last = row.scene;
-    const AccuracyRow *estimator = find(result, last, "estimator", false),
-                      *line = find(result, last, "line", false),
-                      *alone = find(result, last, "estimator", true);
-    out << text("%-21s| ", last.c_str()) << errors_of(estimator) << trust_of(estimator) << "| "
-        << errors_of(line) << "| " << errors_of(alone) << trust_of(alone) << "| "
-        << verdict_of(estimator, line, alone) << "\n";
+    const WorldRows rows = {find(result, last, "estimator", false), find(result, last, "line", false),
+                            find(result, last, "filter", false), find(result, last, "estimator", true),
+                            find(result, last, "filter", true)};
+    out << text("%-21s|", last.c_str()) << errors_of(rows.estimator) << trust_of(rows.estimator) << "|"
+        << errors_of(rows.line) << "|" << errors_of(rows.filter) << "|" << errors_of(rows.alone)
+        << trust_of(rows.alone) << "|" << errors_of(rows.filter_alone) << "| " << verdict_of(rows) << "\n";
   }
 }
 

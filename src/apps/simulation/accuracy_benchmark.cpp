@@ -34,7 +34,7 @@ that the node's own pipeline makes of them with the true lanes.
   --worlds         drives in all worlds: roads, vehicles and errors of other kinds and sizes, in a table of their own
   --world NAME     drives in this world, or this family of worlds; may be given again
   --perception     the worlds' drives from lane markers alone, too
-  --rows SECONDS   also print what the estimator's maps of each drive say, a row each SECONDS
+  --rows SECONDS   also print what the maps of each drive say, but for the line's, a row each SECONDS
   --line FILE      a drive along this navigation line, taken for the center of a lane; may be given again
   --method NAME    this method only; may be given again
   --csv FILE       also write the table to FILE
@@ -51,7 +51,8 @@ the first second of each drive does not count.
 
 Of worlds: RMS of the centerline's error at 10 and 30 m ahead, usable maps, the share of maps whose error at the
 vehicle is within three of the standard deviations that they claim (99 % or more is right), the RMS at 10 m of the worst
-second of all drives, and the share of maps that paint took part in; beside it what the recorded lines alone give.
+second of all drives, and the share of maps that paint took part in; beside it what the recorded lines alone give,
+and a plain filter of four states (offset, heading and half widths of the lane), which "--method filter" names.
 In rows: '!' not usable, '*' not within three standard deviations.
 
 Exit codes: 0 done, 1 a map broke the output contract or a file could not be written, 2 bad arguments.
@@ -116,18 +117,18 @@ Options parse(const std::vector<std::string>& words) {
     }
   }
   BenchmarkOptions& benchmark = options.benchmark;
-  if (!benchmark.worlds.empty() && benchmark.methods.empty()) benchmark.methods = {"line", "estimator"};
+  if (!benchmark.worlds.empty() && benchmark.methods.empty())
+    benchmark.methods = {"line", "filter", "estimator"};
   return options;
 }
 
 void list() {
   std::cout << "scenes:";
   for (const std::string& name : accuracy_scene_names()) std::cout << " " << name;
-  std::cout << "\nworlds:";
-  for (const World& world : worlds()) std::cout << " " << world.name;
   std::cout << "\nmethods:";
   for (const AccuracyMethod& method : accuracy_methods()) std::cout << " " << method.name;
-  std::cout << "\n";
+  std::cout << " " << reference_method().name << "\nworlds:\n";
+  for (const World& world : worlds()) std::cout << "  " << world.name << ": " << world.what << "\n";
 }
 
 std::ofstream open(const std::string& file) {
@@ -197,7 +198,7 @@ int run(const Options& options) {
   if (period > 0.0) {
     observer = [period](const AccuracyScene& scene, std::uint64_t seed, const AccuracyMethod& method,
                         const std::vector<MeasuredMap>& measured) {
-      if (method.name == "estimator") print_drive(scene, seed, method, measured, period, std::cout);
+      if (method.name != "line") print_drive(scene, seed, method, measured, period, std::cout);
     };
   }
   if (!options.plot.empty()) {
@@ -207,7 +208,7 @@ int run(const Options& options) {
     observer = [&](const AccuracyScene& scene, std::uint64_t seed, const AccuracyMethod& method,
                    const std::vector<MeasuredMap>& measured) {
       write_maps(scene, seed, method, measured, maps);
-      if (period > 0.0 && method.name == "estimator") {
+      if (period > 0.0 && method.name != "line") {
         print_drive(scene, seed, method, measured, period, std::cout);
       }
     };
