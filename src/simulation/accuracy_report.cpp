@@ -159,7 +159,10 @@ void write_maps_header(std::ostream& out) {
        << "jitter_10"
        << "jitter_30"
        << "usable"
-       << "violations";
+       << "violations"
+       << "beside"
+       << "claimed"
+       << "markers_alone";
 }
 
 void write_maps(const AccuracyScene& scene, std::uint64_t seed, const AccuracyMethod& method,
@@ -172,7 +175,9 @@ void write_maps(const AccuracyScene& scene, std::uint64_t seed, const AccuracyMe
     line << errors.left_boundary << errors.right_boundary << errors.left_half_width << errors.right_half_width
          << errors.heading << errors.jitter_10 << errors.jitter_30;
     line << (errors.usable ? std::optional<double>(*errors.usable ? 1.0 : 0.0) : std::nullopt)
-         << static_cast<double>(map.violations);
+         << static_cast<double>(map.violations) << errors.beside
+         << (map.claimed > 0.0 ? std::optional<double>(map.claimed) : std::nullopt)
+         << (scene.group == SceneGroup::kMarkersAlone ? 1.0 : 0.0);
   }
 }
 

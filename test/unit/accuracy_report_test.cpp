@@ -77,7 +77,7 @@ TEST(AccuracyReport, TheMapsFileHasALineForEachMap) {
   const std::vector<std::string> lines = lines_of(out.str());
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_EQ(columns_of(lines[0]), columns_of(lines[1]));
-  EXPECT_EQ(lines[1], "scene,7,line,3.5,,,0.25,,,,,,,,,,,1,0");
+  EXPECT_EQ(lines[1], "scene,7,line,3.5,,,0.25,,,,,,,,,,,1,0,,,0");
 }
 
 }  // namespace

@@ -19,11 +19,14 @@ def rms(values):
 
 
 def read(file):
-    """{scene: {method: [row, ...]}}"""
+    """{scene: {method: [row, ...]}}; where a scene was driven with its lines and without, methods come twice."""
     scenes = defaultdict(lambda: defaultdict(list))
     with open(file, newline="") as stream:
-        for row in csv.DictReader(stream):
-            scenes[row["scene"]][row["method"]].append(row)
+        rows = list(csv.DictReader(stream))
+    with_lines = {row["scene"] for row in rows if row["markers_alone"] == "0"}
+    for row in rows:
+        alone = row["markers_alone"] == "1" and row["scene"] in with_lines
+        scenes[row["scene"]][row["method"] + (", markers alone" if alone else "")].append(row)
     return scenes
 
 
@@ -32,24 +35,31 @@ def profile(rows):
 
 
 def draw_scene(plt, name, methods, file):
-    figure, axes = plt.subplots(3, 1, figsize=(10, 11), constrained_layout=True)
+    figure, axes = plt.subplots(4, 1, figsize=(10, 14), constrained_layout=True)
     first_seed = next(iter(methods.values()))[0]["seed"]
     for method, rows in methods.items():
         drive = [row for row in rows if row["seed"] == first_seed]
         times = [number(row["time"]) for row in drive]
         for axis, distance in zip(axes, (10, 30)):
             axis.plot(times, [number(row[f"center_at_{distance}_m"]) for row in drive], label=method, linewidth=1)
-        axes[2].plot(DISTANCES, profile(rows), marker="o", label=method)
+        axes[3].plot(DISTANCES, profile(rows), marker="o", label=method)
+        claims = [3.0 * number(row["claimed"]) for row in drive]
+        if any(not math.isnan(claim) for claim in claims):
+            line, = axes[2].plot(times, [number(row["beside"]) for row in drive], label=method, linewidth=1)
+            axes[2].fill_between(times, [-claim for claim in claims], claims, alpha=0.15, color=line.get_color())
     for axis, distance in zip(axes, (10, 30)):
         axis.set_title(f"{name}: error of the center {distance} m ahead, drive {first_seed}, left positive")
         axis.set_xlabel("time [s]")
-    axes[2].set_title("RMS of all drives")
-    axes[2].set_xlabel("distance ahead [m]")
-    axes[2].set_ylim(bottom=0)
+    axes[2].set_title("at the vehicle, and three of the standard deviations that the maps claim")
+    axes[2].set_xlabel("time [s]")
+    axes[3].set_title("RMS of all drives")
+    axes[3].set_xlabel("distance ahead [m]")
+    axes[3].set_ylim(bottom=0)
     for axis in axes:
         axis.set_ylabel("[m]")
         axis.grid(alpha=0.3)
-        axis.legend()
+        if axis.has_data():
+            axis.legend()
     figure.savefig(file, dpi=100)
     plt.close(figure)
 
@@ -57,7 +67,7 @@ def draw_scene(plt, name, methods, file):
 def draw_all(plt, scenes, file):
     names = list(scenes)
     methods = list(dict.fromkeys(method for scene in scenes.values() for method in scene))
-    figure, axes = plt.subplots(2, 1, figsize=(12, 9), constrained_layout=True)
+    figure, axes = plt.subplots(2, 1, figsize=(max(12, 0.5 * len(names)), 9), constrained_layout=True)
     for axis, distance in zip(axes, (10, 30)):
         for i, method in enumerate(methods):
             heights = [rms([number(row[f"center_at_{distance}_m"]) for row in scenes[name].get(method, [])])
