@@ -37,16 +37,18 @@ def profile(rows):
 def draw_scene(plt, name, methods, file):
     figure, axes = plt.subplots(4, 1, figsize=(10, 14), constrained_layout=True)
     first_seed = next(iter(methods.values()))[0]["seed"]
-    for method, rows in methods.items():
+    for i, (method, rows) in enumerate(methods.items()):
+        color = f"C{i}"
         drive = [row for row in rows if row["seed"] == first_seed]
         times = [number(row["time"]) for row in drive]
         for axis, distance in zip(axes, (10, 30)):
-            axis.plot(times, [number(row[f"center_at_{distance}_m"]) for row in drive], label=method, linewidth=1)
-        axes[3].plot(DISTANCES, profile(rows), marker="o", label=method)
+            axis.plot(times, [number(row[f"center_at_{distance}_m"]) for row in drive], label=method,
+                      color=color, linewidth=1)
+        axes[3].plot(DISTANCES, profile(rows), marker="o", label=method, color=color)
         claims = [3.0 * number(row["claimed"]) for row in drive]
         if any(not math.isnan(claim) for claim in claims):
-            line, = axes[2].plot(times, [number(row["beside"]) for row in drive], label=method, linewidth=1)
-            axes[2].fill_between(times, [-claim for claim in claims], claims, alpha=0.15, color=line.get_color())
+            axes[2].plot(times, [number(row["beside"]) for row in drive], label=method, color=color, linewidth=1)
+            axes[2].fill_between(times, [-claim for claim in claims], claims, alpha=0.15, color=color)
     for axis, distance in zip(axes, (10, 30)):
         axis.set_title(f"{name}: error of the center {distance} m ahead, drive {first_seed}, left positive")
         axis.set_xlabel("time [s]")
