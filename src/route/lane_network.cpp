@@ -125,6 +125,17 @@ void LaneNetwork::link(std::vector<GraphFault>& faults) {
     lane.left = linked(source.id, source.left_neighbors, "left neighbor");
     lane.right = linked(source.id, source.right_neighbors, "right neighbor");
   }
+  // What one lane names holds for the other, too: many maps name a link at one of its ends only.
+  const auto complete = [&](std::vector<std::size_t> Lane::*named, std::vector<std::size_t> Lane::*back) {
+    for (std::size_t i = 0; i < lanes_.size(); ++i) {
+      for (const std::size_t other : lanes_[i].*named) {
+        std::vector<std::size_t>& links = lanes_[other].*back;
+        if (std::find(links.begin(), links.end(), i) == links.end()) links.push_back(i);
+      }
+    }
+  };
+  complete(&Lane::successors, &Lane::predecessors);
+  complete(&Lane::predecessors, &Lane::successors);
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = lanes_[i];
     const Point2& end = lane.line.points().back().position;

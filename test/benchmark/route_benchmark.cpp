@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "relative_map/route/reference_line.hpp"
 #include "relative_map/route/route_map.hpp"
@@ -71,7 +73,11 @@ struct Town {
     map.set_graph(network);
     request.places = {{"0,0/0/1", 5.0},
                       {std::to_string(blocks - 2) + "," + std::to_string(blocks - 1) + "/0/1", 60.0}};
-    map.set_route(*search.find(request).route);
+    const SearchResult found = search.find(request);
+    if (!found.route) throw std::runtime_error(found.why_not);
+    if (map.set_route(*found.route).code != RouteCode::kOk || map.update(pose(20.0), 10.0).segments.empty()) {
+      throw std::runtime_error("the route can't be followed");
+    }
   }
   Pose2 pose(double along) const {
     const LaneLine& line = network->lane(*network->find("0,0/0/1")).line;
@@ -84,7 +90,7 @@ struct Town {
 };
 
 Town& town_of(benchmark::State& state) {
-  static Town small(6), large(100);
+  static Town small(5), large(66);
   Town& town = state.range(0) == 0 ? small : large;
   state.SetLabel(std::to_string(town.network->size()) + " lanes");
   return town;

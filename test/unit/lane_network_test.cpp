@@ -61,6 +61,16 @@ TEST(LaneNetwork, ALinkToNowhereIsToldAndLeftOut) {
   EXPECT_TRUE(network->lane(1).successors.empty());
 }
 
+TEST(LaneNetwork, ALinkThatIsNamedAtOneEndIsOne) {
+  LaneGraph graph = test::grid(1, 3);
+  test::lane_of(graph, "a1").predecessors.clear();
+  test::lane_of(graph, "a1").successors.clear();
+  const auto network = test::prepared(graph);
+  EXPECT_EQ(network->lane(1).predecessors, std::vector<std::size_t>{0});
+  EXPECT_EQ(network->lane(1).successors, std::vector<std::size_t>{2});
+  EXPECT_EQ(network->lane(2).predecessors, std::vector<std::size_t>{1});
+}
+
 TEST(LaneNetwork, SuccessorsThatDoNotMeetAreTold) {
   LaneGraph graph = test::grid(1, 2);
   for (Point2& point : graph.lanes[1].centerline) point.y() += 4.0;

@@ -22,7 +22,8 @@ struct GraphFault {
 /// they lie. It does not change, so ticks and searches may share it.
 class LaneNetwork {
  public:
-  /// A lane, with its links as places in the list. Links to lanes that are not there are left out.
+  /// A lane, with its links as places in the list. Links to lanes that are not there are left out; a link
+  /// that is named at one of its ends only is one at both.
   struct Lane {
     GraphLane source;
     LaneLine line;
