@@ -16,7 +16,7 @@
 namespace relative_map {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 constexpr const char* kHelp = R"(Usage: rosrun relative_map follow_map --map FILE
 

@@ -80,7 +80,7 @@ int run(const std::vector<std::string>& words) {
   for (const Pose& pose : poses) {
     core::RouteUpdate update = core::checked(map.update(pose.pose, pose.speed), map.index());
     if (taken.code != core::RouteCode::kOk) update.status = taken;
-    nlohmann::ordered_json told = json_of(update, map.index());
+    nlohmann::json told = json_of(update, map.index());
     if (line.has("--line") && !update.segments.empty()) {
       told["reference_line"] = json_of(maker.make(update.segments, pose.pose.position()).front());
     }

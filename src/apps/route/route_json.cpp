@@ -8,7 +8,7 @@ namespace relative_map {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 /// The run of segments around the vehicle's, as the original tells it: from the one before it up to the first
 /// lane that comes twice. The tracker here does not need it.

@@ -10,10 +10,10 @@ namespace relative_map {
 
 /// What a tick gives, as one JSON object: the place and the segments, or {"refused": why}. `index` is the
 /// route's; none where it was made from a relative map.
-nlohmann::ordered_json json_of(const core::RouteUpdate& update, const core::RouteIndex* index);
+nlohmann::json json_of(const core::RouteUpdate& update, const core::RouteIndex* index);
 
 /// [[x, y, theta, kappa, s]...]
-nlohmann::ordered_json json_of(const core::ReferenceLine& line);
+nlohmann::json json_of(const core::ReferenceLine& line);
 
 /// "FORWARD", "LEFT", "RIGHT".
 const char* name_of(core::ChangeLane change);
