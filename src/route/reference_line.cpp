@@ -144,7 +144,12 @@ ReferenceLineMaker::Knots ReferenceLineMaker::knots_on(const Way& way, double ve
   for (double along = knots.back().along + param_.spacing; along < way.length(); along += param_.spacing) {
     knots.push_back(knot_at(along));
   }
-  if (way.length() - knots.back().along > 0.1 * param_.spacing) {
+  // The last piece may be a little longer or shorter than the others, but not much: two points close together
+  // would make a bend of nothing.
+  if (way.length() - knots.back().along < 0.5 * param_.spacing && knots.size() > 1 && !knots.back().pinned) {
+    knots.pop_back();
+  }
+  if (way.length() - knots.back().along > 0.5 * param_.spacing) {
     knots.push_back(knot_at(way.length()));
     knots.back().passing = true;
   }
@@ -153,8 +158,7 @@ ReferenceLineMaker::Knots ReferenceLineMaker::knots_on(const Way& way, double ve
 
 bool ReferenceLineMaker::smooth(Knots& knots) const {
   std::vector<Anchor> anchors;
-  for (std::size_t i = 0; i < knots.size(); ++i) {
-    const Knot& knot = knots[i];
+  for (const Knot& knot : knots) {
     const LaneNetwork::Lane& lane = network_->lane(knot.lane);
     const double left = lane.left_half_width(knot.lane_s), right = lane.right_half_width(knot.lane_s);
     const double width = (left > 0.0 ? left : param_.half_width) + (right > 0.0 ? right : param_.half_width);
@@ -165,8 +169,7 @@ bool ReferenceLineMaker::smooth(Knots& knots) const {
                                     param_.least_bound, param_.greatest_bound);
     const double center = param_.curb_shift * ((right_curb ? 1 : 0) - (left_curb ? 1 : 0));
     Anchor anchor{knot.point, knot.left, center - bound, center + bound, center};
-    const bool end = i == 0 || i + 1 == knots.size();
-    if (knot.pinned || end) anchor.lower = anchor.upper = knot.pinned ? knot.offset : center;
+    if (knot.pinned) anchor.lower = anchor.upper = knot.offset;
     anchors.push_back(anchor);
   }
   const double follow = std::pow(param_.spacing / param_.follow, 6);

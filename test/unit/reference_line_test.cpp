@@ -203,6 +203,22 @@ TEST(ReferenceLine, BendsBoundTheSpeed) {
   EXPECT_NEAR(line.points[line.points.size() / 2 + 30].speed_limit, std::sqrt(1.5 * 40.0), 0.5);
 }
 
+// Its last point moves on with the vehicle, and must not make a bend that is none.
+TEST(ReferenceLine, EndsWithoutABend) {
+  const LaneGraph graph = coarse_bend(80.0, 8.0);
+  Ride ride(graph, along(graph));
+  Point2 vehicle(-55.0, 0.0);
+  ReferenceLine line = ride.at(vehicle, 0.0);
+  for (int tick = 0; tick < 80; ++tick) {
+    vehicle = point_at(line, line.s + 0.73);
+    const Point2 ahead = point_at(line, line.s + 1.5) - vehicle;
+    line = ride.at(vehicle, std::atan2(ahead.y(), ahead.x()));
+    for (std::size_t i = line.points.size() - 10; i < line.points.size(); ++i) {
+      EXPECT_LT(std::abs(line.points[i].path.kappa), 2.0 / 80.0) << tick;
+    }
+  }
+}
+
 TEST(ReferenceLine, ArcLengthAndHeadingAreThoseOfItsPoints) {
   const LaneGraph graph = coarse_bend(60.0, 6.0);
   Ride ride(graph, along(graph));
