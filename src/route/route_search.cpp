@@ -28,27 +28,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Reached {};  ///< thrown to end a search at its goal
 
-/// Only the lanes that a way starts and ends on are cut: those that it changes to or from there are whole.
-void widen(const LaneNetwork& network, Way& way) {
-  for (std::size_t i = 1; i < way.size() && way[i - 1].leave != ChangeLane::kForward; ++i) {
-    way[i].piece.start = 0.0;
-  }
-  for (std::size_t i = way.size() - 1; i > 0 && way[i - 1].leave != ChangeLane::kForward; --i) {
-    way[i - 1].piece.end = network.lane(way[i - 1].piece.lane).length();
-  }
-}
-
-/// Puts a leg behind another at a way point.
-void join(Way& way, const Way& leg) {
-  if (way.empty()) {
-    way = leg;
-    return;
-  }
-  way.back().piece.end = leg.front().piece.end;
-  way.back().leave = leg.front().leave;
-  way.insert(way.end(), leg.begin() + 1, leg.end());
-}
-
 class StopAt : public boost::default_dijkstra_visitor {
  public:
   explicit StopAt(Vertex goal) : goal_(goal) {}

@@ -124,6 +124,25 @@ Beside beside_of(const LaneNetwork& network, const std::vector<Row>& rows, std::
 
 }  // namespace
 
+void widen(const LaneNetwork& network, Way& way) {
+  for (std::size_t i = 1; i < way.size() && way[i - 1].leave != ChangeLane::kForward; ++i) {
+    way[i].piece.start = 0.0;
+  }
+  for (std::size_t i = way.size() - 1; i > 0 && way[i - 1].leave != ChangeLane::kForward; --i) {
+    way[i - 1].piece.end = network.lane(way[i - 1].piece.lane).length();
+  }
+}
+
+void join(Way& way, const Way& leg) {
+  if (way.empty()) {
+    way = leg;
+    return;
+  }
+  way.back().piece.end = leg.front().piece.end;
+  way.back().leave = leg.front().leave;
+  way.insert(way.end(), leg.begin() + 1, leg.end());
+}
+
 bool may_change(const LaneNetwork& network, std::size_t from, std::size_t to, ChangeLane side) {
   const GraphLane &here = network.lane(from).source, &there = network.lane(to).source;
   if (here.type != LaneType::kCityDriving || there.type != LaneType::kCityDriving) return false;

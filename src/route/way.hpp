@@ -21,6 +21,12 @@ using Way = std::vector<WayStep>;
 /// Whether a vehicle may change from a lane to the side, by the lanes' types and the paint between them.
 bool may_change(const LaneNetwork& network, std::size_t from, std::size_t to, ChangeLane side);
 
+/// Only the lanes that a way starts and ends on are cut: those that it changes to or from there are made
+/// whole.
+void widen(const LaneNetwork& network, Way& way);
+/// Puts a leg behind another at a way point.
+void join(Way& way, const Way& leg);
+
 /// The roads of a way: a stretch with lane changes in it is one road with a passage for each lane row, as
 /// long as the rows run side by side; every other lane is a road of its own. No row is made longer over a
 /// closed lane.
