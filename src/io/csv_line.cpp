@@ -1,226 +1,203 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <iomanip>
 #include <limits>
 #include <locale>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 
+#include "csv_columns.hpp"
+#include "csv_record.hpp"
 #include "relative_map/io/line_formats.hpp"
-#include "relative_map/io/whole_file.hpp"
+#include "relative_map/io/text.hpp"
 
 namespace relative_map::core {
 
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr char kBlank = ' ';  // stands for any number of them
-const std::string kSeparators = ";\t|,";
-
-/// Longitude, latitude and altitude are kept as x, y and z until they are projected.
-struct Column {
-  const char* name;
-  double LinePoint::*value;
-  bool geographic;
-};
-
-const Column* column_named(const std::string& name) {
-  static const std::map<std::string, Column> kColumns = {
-      {"x", {"x", &LinePoint::x, false}},
-      {"easting", {"x", &LinePoint::x, false}},
-      {"y", {"y", &LinePoint::y, false}},
-      {"northing", {"y", &LinePoint::y, false}},
-      {"z", {"z", &LinePoint::z, false}},
-      {"s", {"s", &LinePoint::s, false}},
-      {"theta", {"theta", &LinePoint::theta, false}},
-      {"kappa", {"kappa", &LinePoint::kappa, false}},
-      {"dkappa", {"dkappa", &LinePoint::dkappa, false}},
-      {"lon", {"lon", &LinePoint::x, true}},
-      {"lng", {"lon", &LinePoint::x, true}},
-      {"longitude", {"lon", &LinePoint::x, true}},
-      {"lat", {"lat", &LinePoint::y, true}},
-      {"latitude", {"lat", &LinePoint::y, true}},
-      {"alt", {"alt", &LinePoint::z, true}},
-      {"altitude", {"alt", &LinePoint::z, true}},
-      {"ele", {"alt", &LinePoint::z, true}},
-      {"height", {"alt", &LinePoint::z, true}},
-  };
-  const auto found = kColumns.find(name);
-  return found == kColumns.end() ? nullptr : &found->second;
-}
-
-std::string trimmed(const std::string& text) {
-  const char* const blanks = " \t\r\n\"";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
-/// The one that a line has; a blank if it has none of the others.
-char separator_of(const std::string& line) {
-  for (char separator : kSeparators) {
-    if (line.find(separator) != std::string::npos) return separator;
-  }
-  return kBlank;
-}
-
-std::vector<std::string> split(const std::string& line, char separator) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  std::string cell;
-  if (separator == kBlank) {
-    while (stream >> cell) cells.push_back(trimmed(cell));
-    return cells;
-  }
-  while (std::getline(stream, cell, separator)) cells.push_back(trimmed(cell));
-  if (!line.empty() && line.back() == separator) cells.emplace_back();
-  return cells;
-}
-
-std::optional<double> number_of(const std::string& text) {
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  double number = 0.0;
-  char rest = 0;
-  if (stream >> number && !(stream >> rest)) return number;
-  const std::string word = lower(text);
-  if (text.empty() || word == "nan") return kNaN;
-  return std::nullopt;
-}
 
 std::string name_of(char separator) {
   if (separator == '\t') return "a tab";
   return separator == kBlank ? "a blank" : std::string("'") + separator + "'";
 }
 
-/// What is known of a file after its first line.
-class Table {
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+bool is_number_or_nothing(const std::string& cell) {
+  const std::string word = lower(trimmed(cell));
+  return word.empty() || word == "nan" || parse_number(word);
+}
+
+/// Whether a first line names columns: one that holds a number is no such line.
+bool is_header(const std::vector<std::string>& cells) {
+  const auto is_number = [](const std::string& cell) { return parse_number(cell).has_value(); };
+  return std::none_of(cells.begin(), cells.end(), is_number) &&
+         !std::all_of(cells.begin(), cells.end(), is_number_or_nothing);
+}
+
+[[noreturn]] void fail(std::size_t line, const std::string& what) {
+  throw std::runtime_error("line " + std::to_string(line) + ": " + what);
+}
+
+/// Reads a file into points, and into what is said beside them.
+class CsvLine {
  public:
-  /// True if the line was a header.
-  bool start(const std::string& line) {
-    separator_ = separator_of(line);
-    const std::vector<std::string> cells = split(line, separator_);
-    if (cells.empty() || number_of(cells[0])) {
-      for (const char* name : {"x", "y", "z"}) columns_.push_back(column_named(name));
-      columns_.resize(std::min(columns_.size(), cells.size()), nullptr);
-      expect("x", "y");
-      return false;
+  explicit CsvLine(const std::string& text) : reader_(text) {
+    separator_ = reader_.next_separator();
+    reader_.set_separator(separator_);
+    CsvRecord record;
+    bool started = false;
+    while (reader_.next(record)) {
+      const std::vector<CsvRecord> comments = reader_.take_comments();
+      take_header(comments);
+      try {
+        if (!started && start(record, comments)) {
+          started = true;
+          continue;
+        }
+        started = true;
+        points_.push_back(parse(record.cells));
+      } catch (const LineFault& fault) {
+        fail(fault.line, fault.what());
+      } catch (const std::runtime_error& fault) {
+        fail(record.line, fault.what());
+      }
     }
-    for (const std::string& cell : cells) columns_.push_back(column_named(lower(cell)));
-    geographic_ = has("lon") || has("lat");
-    if (geographic_) {
-      expect("lon", "lat");
-    } else {
-      expect("x", "y");
+    take_header(reader_.take_comments());
+  }
+
+  const std::vector<LinePoint>& points() const { return points_; }
+  const CsvColumns& columns() const { return columns_; }
+  const LineHeader& header() const { return header_; }
+
+ private:
+  /// In another line than the one that is read.
+  struct LineFault : std::runtime_error {
+    LineFault(std::size_t number, const std::string& what) : std::runtime_error(what), line(number) {}
+    std::size_t line;
+  };
+
+  void take_header(const std::vector<CsvRecord>& comments) {
+    for (const CsvRecord& comment : comments) {
+      const std::string& text = comment.cells[0];
+      if (text.find("{\"header\"") == std::string::npos) continue;
+      try {
+        header_ = parse_line_header(text.substr(text.find('{')));
+      } catch (const std::runtime_error& fault) {
+        fail(comment.line, fault.what());
+      }
+    }
+  }
+
+  /// By the first record; true if that was a line of names.
+  bool start(const CsvRecord& record, const std::vector<CsvRecord>& comments) {
+    if (is_header(record.cells)) {
+      columns_ = columns_of_names(record.cells);
+      return true;
+    }
+    // The comment next to the numbers may name their columns.
+    for (auto comment = comments.rbegin(); comment != comments.rend(); ++comment) {
+      if (name_columns(*comment, record.cells.size())) return false;
+    }
+    columns_ = columns_without_names(record.cells.size());
+    return false;
+  }
+
+  /// True if a comment names the columns; throws if it seems to, and they are not enough or too many.
+  bool name_columns(const CsvRecord& comment, std::size_t count) {
+    std::vector<std::string> names = split(trimmed(comment.cells[0]), separator_);
+    for (std::string& name : names) {
+      name = trimmed(name);
+      if (name.size() > 1 && name.front() == '"' && name.back() == '"')
+        name = name.substr(1, name.size() - 2);
+    }
+    if (names.size() < 2 || !look_like_names(names)) return false;
+    // Without a name that is known here it is a remark, unless it has a name for each column.
+    const bool each = separator_ != kBlank && names.size() == count;
+    if (!each && !name_something(names)) return false;
+    if (names.size() != count) {
+      if (separator_ == kBlank) return false;  // a sentence
+      throw LineFault(comment.line, "names " + std::to_string(names.size()) + " columns, but there are " +
+                                        std::to_string(count));
+    }
+    try {
+      columns_ = columns_of_names(names);
+    } catch (const std::runtime_error& fault) {
+      throw LineFault(comment.line, fault.what());
     }
     return true;
   }
 
-  LinePoint parse(const std::string& line) const {
-    const std::vector<std::string> cells = split(line, separator_);
-    if (cells.size() < columns_.size()) {
-      const char other = separator_of(line);
-      std::string fault =
-          "has " + std::to_string(cells.size()) + " of " + std::to_string(columns_.size()) + " numbers";
-      if (other != separator_) {
-        fault += ", since " + name_of(other) + " stands between them, and " + name_of(separator_) +
-                 " in the first line";
-      }
-      throw std::runtime_error(fault);
-    }
+  LinePoint parse(const std::vector<std::string>& cells) const {
+    const std::size_t count = columns_.list.size();
+    if (cells.size() != count) fail_by_count(cells);
     LinePoint point{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      // lon,lat files may have x and y as well.
-      if (columns_[i] == nullptr || (geographic_ && !columns_[i]->geographic)) continue;
-      const std::optional<double> number = number_of(cells[i]);
-      if (!number) {
-        const bool comma = separator_ != ',' && cells[i].find(',') != std::string::npos;
-        throw std::runtime_error("'" + cells[i] + "' is not a number" +
-                                 (comma ? ": the decimal sign must be a point" : ""));
-      }
-      point.*columns_[i]->value = *number;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (columns_.list[i] == nullptr) continue;
+      if (!is_number_or_nothing(cells[i])) throw std::runtime_error(not_a_number(cells[i]));
+      point.*columns_.list[i]->value = parse_number(cells[i]).value_or(kNaN);
     }
     if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
-      throw std::runtime_error(geographic_ ? "longitude or latitude is missing or not finite"
-                                           : "x or y is missing or not finite");
+      throw std::runtime_error(columns_.geographic ? "longitude or latitude is missing or not finite"
+                                                   : "x or y is missing or not finite");
     }
     return point;
   }
 
-  bool geographic() const { return geographic_; }
-
- private:
-  bool has(const std::string& name) const {
-    return std::any_of(columns_.begin(), columns_.end(),
-                       [&](const Column* column) { return column != nullptr && column->name == name; });
+  [[noreturn]] void fail_by_count(const std::vector<std::string>& cells) const {
+    const std::size_t count = columns_.list.size();
+    if (cells.size() > count) {
+      throw std::runtime_error("has " + std::to_string(cells.size()) + " cells, but there are " +
+                               std::to_string(count) + " columns");
+    }
+    std::string fault = "has " + std::to_string(cells.size()) + " of " + std::to_string(count) + " numbers";
+    const std::string line = joined(cells) + "\n";
+    const char other = CsvReader(line).next_separator();
+    if (cells.size() == 1 && other != separator_) {
+      fault += ", since " + name_of(other) + " stands between them, and " + name_of(separator_) +
+               " in the first line";
+    }
+    throw std::runtime_error(fault);
   }
-  void expect(const char* first, const char* second) const {
-    if (has(first) && has(second)) return;
-    throw std::runtime_error(
-        "there must be columns x and y, or lon and lat, with one of , ; | tab or blank "
-        "between them");
-  }
 
+  CsvReader reader_;
   char separator_ = ',';
-  std::vector<const Column*> columns_;
-  bool geographic_ = false;
+  CsvColumns columns_;
+  LineHeader header_;
+  std::vector<LinePoint> points_;
 };
-
-LineFile projected(LineFile file, const ReadOptions& options) {
-  std::vector<GeoPoint> points;
-  for (const LinePoint& point : file.line.points) points.push_back({point.x, point.y, point.z});
-  GeoReference& reference = file.header.reference;
-  if (options.reference.projection != Projection::kNone) reference = options.reference;
-  if (reference.projection == Projection::kNone) reference = utm_zone_of(points);
-  file.line.points = project(points, reference);
-  return file;
-}
 
 }  // namespace
 
 LineFile read_csv(const std::string& path, const ReadOptions& options) {
-  std::string content = read_whole_file(path);
-  if (content.rfind("\xEF\xBB\xBF", 0) == 0) content.erase(0, 3);  // a byte order mark
-  std::istringstream in(content);
+  const std::string text = read_text(path);
   LineFile file;
-  file.line.name = line_name(path);
-  Table table;
-  bool started = false;
-  std::string text;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
-    const std::string line = trimmed(text);
-    if (line.empty()) continue;
-    try {
-      if (line[0] == '#') {
-        if (line.find("{\"header\"") != std::string::npos)
-          file.header = parse_line_header(line.substr(line.find('{')));
-        continue;
-      }
-      if (!started && table.start(text)) {
-        started = true;
-        continue;
-      }
-      started = true;
-      file.line.points.push_back(table.parse(text));
-    } catch (const std::runtime_error& fault) {
-      throw std::runtime_error(path + ", line " + std::to_string(number) + ": " + fault.what());
+  GeoLine geo;
+  bool geographic = false;
+  try {
+    const CsvLine csv(text);
+    file.line.name = line_name(path);
+    file.line.points = csv.points();
+    file.header = geo.header = csv.header();
+    geographic = csv.columns().geographic;
+    if (!csv.columns().left_out.empty()) {
+      geo.notes.push_back("these columns are left out: " + joined(csv.columns().left_out));
     }
+  } catch (const std::runtime_error& fault) {
+    throw std::runtime_error(path + ", " + fault.what());
   }
   if (file.line.points.empty()) throw std::runtime_error(path + ": has no points");
-  if (!table.geographic()) return file;
-  try {
-    return projected(std::move(file), options);
-  } catch (const std::runtime_error& fault) {
-    throw std::runtime_error(path + ": " + fault.what());
+  if (geographic) {
+    for (const LinePoint& point : file.line.points) geo.points.push_back({point.x, point.y, point.z});
+    return projected(path, geo, options);
   }
+  file.notes = geo.notes;
+  return file;
 }
 
 std::string to_csv(const LineFile& file, const WriteOptions& options) {
@@ -238,22 +215,21 @@ std::string to_csv(const LineFile& file, const WriteOptions& options) {
     }
     return out.str();
   }
-  std::vector<const Column*> columns;
+  std::vector<const CsvColumn*> columns;
   for (const char* name : {"x", "y", "z", "s", "theta", "kappa", "dkappa"}) {
-    const Column* column = column_named(name);
+    const CsvColumn& known = column(name);
     const auto& points = file.line.points;
-    const bool given = std::any_of(points.begin(), points.end(), [&](const LinePoint& point) {
-      return std::isfinite(point.*column->value);
-    });
-    if (given) columns.push_back(column);
+    const bool given = std::any_of(points.begin(), points.end(),
+                                   [&](const LinePoint& point) { return std::isfinite(point.*known.value); });
+    if (given) columns.push_back(&known);
   }
-  for (const Column* column : columns) {
+  for (const CsvColumn* column : columns) {
     if (column != columns.front()) out << options.separator;
     out << column->name;
   }
   for (const LinePoint& point : file.line.points) {
     out << '\n' << std::setprecision(12);
-    for (const Column* column : columns) {
+    for (const CsvColumn* column : columns) {
       if (column != columns.front()) out << options.separator;
       if (std::isfinite(point.*column->value)) out << point.*column->value;
     }

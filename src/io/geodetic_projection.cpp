@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMaxFromMeridian = 6.0;      // [deg] twice half a zone
+constexpr double kMaxBeyondEquator = 2.0;     // [deg] a line may lead over the equator
 constexpr double kMaxFromOrigin = 200'000.0;  // [m]
 constexpr const char* kSwapped = "; are longitude and latitude swapped?";
 
@@ -66,6 +67,10 @@ LinePoint to_utm(const GeoPoint& point, std::size_t index, const GeoReference& r
     fail(index, "(longitude " + text_of(point.longitude) + ", latitude " + text_of(point.latitude) +
                     ") lies far outside of " + describe(reference) +
                     ": it is the wrong zone, or longitude and latitude are swapped");
+  }
+  if ((reference.north ? -point.latitude : point.latitude) > kMaxBeyondEquator) {
+    fail(index, "has latitude " + text_of(point.latitude) + ", far on the other side of the equator from " +
+                    describe(reference) + ": N and S are its hemispheres, and not bands of latitude");
   }
   int zone = 0;
   bool north = true;

@@ -4,11 +4,12 @@
 #include <iomanip>
 #include <limits>
 #include <locale>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "relative_map/io/line_formats.hpp"
-#include "relative_map/io/whole_file.hpp"
+#include "relative_map/io/text.hpp"
 
 namespace relative_map::core {
 
@@ -16,58 +17,83 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-void add_point(const XMLElement& element, std::vector<GeoPoint>& points) {
+[[noreturn]] void fail(const XMLElement& element, const std::string& what) {
+  throw std::runtime_error("line " + std::to_string(element.GetLineNum()) + ": " + what);
+}
+
+/// Whether the element is `name`, under whatever prefix its namespace has.
+bool is(const XMLElement& element, const std::string& name) {
+  const std::string own = element.Name();
+  const std::size_t colon = own.find(':');
+  return own.compare(colon == std::string::npos ? 0 : colon + 1, std::string::npos, name) == 0;
+}
+
+std::vector<const XMLElement*> children(const tinyxml2::XMLNode& parent, const std::string& name) {
+  std::vector<const XMLElement*> found;
+  for (const XMLElement* child = parent.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    if (is(*child, name)) found.push_back(child);
+  }
+  return found;
+}
+
+double number(const XMLElement& element, const std::string& name, const char* text) {
+  const std::optional<double> value = parse_number(text);
+  if (!value) fail(element, name + ": " + not_a_number(text));
+  return *value;
+}
+
+GeoPoint parse_point(const XMLElement& element) {
+  const char* const latitude = element.Attribute("lat");
+  const char* const longitude = element.Attribute("lon");
+  if (latitude == nullptr || longitude == nullptr) fail(element, "a point lacks lat or lon");
   GeoPoint point;
+  point.latitude = number(element, "lat", latitude);
+  point.longitude = number(element, "lon", longitude);
   point.altitude = std::numeric_limits<double>::quiet_NaN();
-  const bool complete = element.QueryDoubleAttribute("lat", &point.latitude) == tinyxml2::XML_SUCCESS &&
-                        element.QueryDoubleAttribute("lon", &point.longitude) == tinyxml2::XML_SUCCESS;
-  if (!complete) {
-    throw std::runtime_error("line " + std::to_string(element.GetLineNum()) + ": a point lacks lat or lon");
+  for (const XMLElement* altitude : children(element, "ele")) {
+    const char* const text = altitude->GetText();
+    if (text != nullptr && !trimmed(text).empty()) point.altitude = number(*altitude, "ele", text);
   }
-  if (const XMLElement* altitude = element.FirstChildElement("ele")) {
-    if (altitude->QueryDoubleText(&point.altitude) != tinyxml2::XML_SUCCESS) {
-      throw std::runtime_error("line " + std::to_string(altitude->GetLineNum()) + ": ele is not a number");
-    }
-  }
-  points.push_back(point);
+  return point;
 }
 
-void add_points(const XMLElement& parent, const char* name, std::vector<GeoPoint>& points) {
-  for (const XMLElement* point = parent.FirstChildElement(name); point != nullptr;
-       point = point->NextSiblingElement(name)) {
-    add_point(*point, points);
+/// Of a track, or a route.
+GeoLine parse_line(const XMLElement& element) {
+  GeoLine line;
+  for (const XMLElement* point : children(element, "rtept")) line.points.push_back(parse_point(*point));
+  for (const XMLElement* segment : children(element, "trkseg")) {
+    const std::vector<const XMLElement*> points = children(*segment, "trkpt");
+    if (!line.points.empty() && !points.empty()) line.parts.push_back(line.points.size());
+    for (const XMLElement* point : points) line.points.push_back(parse_point(*point));
   }
-}
-
-/// The one track, or the one route.
-const XMLElement& find_line(const XMLElement& root) {
-  const XMLElement* line = nullptr;
-  int count = 0;
-  for (const char* name : {"trk", "rte"}) {
-    for (const XMLElement* found = root.FirstChildElement(name); found != nullptr;
-         found = found->NextSiblingElement(name), ++count) {
-      if (line == nullptr) line = found;
-    }
+  for (const XMLElement* description : children(element, "desc")) {
+    const char* const text = description->GetText();
+    if (text != nullptr && std::string(text).rfind("{\"header\"", 0) == 0)
+      line.header = parse_line_header(text);
   }
-  if (count == 1) return *line;
-  throw std::runtime_error("has " + std::to_string(count) + " tracks and routes, but must have one");
+  return line;
 }
 
 GeoLine parse(const tinyxml2::XMLDocument& document) {
-  const XMLElement* root = document.FirstChildElement("gpx");
-  if (root == nullptr) throw std::runtime_error("is no GPX file: it has no element 'gpx'");
-  const XMLElement& track = find_line(*root);
-  GeoLine line;
-  add_points(track, "rtept", line.points);
-  for (const XMLElement* segment = track.FirstChildElement("trkseg"); segment != nullptr;
-       segment = segment->NextSiblingElement("trkseg")) {
-    add_points(*segment, "trkpt", line.points);
+  const std::vector<const XMLElement*> roots = children(document, "gpx");
+  if (roots.empty()) throw std::runtime_error("is no GPX file: it has no element 'gpx'");
+  std::vector<GeoLine> lines;
+  std::size_t empty = 0;
+  for (const char* name : {"trk", "rte"}) {
+    for (const XMLElement* element : children(*roots.front(), name)) {
+      GeoLine line = parse_line(*element);
+      if (line.points.empty()) {
+        ++empty;
+      } else {
+        lines.push_back(std::move(line));
+      }
+    }
   }
-  const XMLElement* description = track.FirstChildElement("desc");
-  const char* text = description != nullptr ? description->GetText() : nullptr;
-  if (text != nullptr && std::string(text).rfind("{\"header\"", 0) == 0)
-    line.header = parse_line_header(text);
-  return line;
+  if (lines.size() == 1) return lines.front();
+  if (lines.empty() && empty > 0) throw std::runtime_error("has no points");
+  throw std::runtime_error("has " + std::to_string(lines.size()) +
+                           " tracks and routes with points, but must have one");
 }
 
 std::string degrees(double value) {
@@ -80,8 +106,8 @@ std::string degrees(double value) {
 }  // namespace
 
 GeoLine read_gpx(const std::string& path) {
-  const std::string content = read_whole_file(path);
-  if (content.empty()) throw std::runtime_error(path + ": has no points");
+  const std::string content = read_text(path);
+  if (trimmed(content).empty()) throw std::runtime_error(path + ": has no points");
   tinyxml2::XMLDocument document;
   if (document.Parse(content.data(), content.size()) != tinyxml2::XML_SUCCESS) {
     throw std::runtime_error(path + ": is no whole XML file, from line " +

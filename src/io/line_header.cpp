@@ -1,5 +1,6 @@
 #include "relative_map/io/line_header.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -46,6 +47,20 @@ GeoReference parse_reference(const Json& fields) {
   return reference;
 }
 
+std::vector<BridgedGap> parse_bridged(const Json& fields) {
+  std::vector<BridgedGap> bridged;
+  const auto gaps = fields.find("bridged");
+  if (gaps == fields.end() || gaps->is_null()) return bridged;
+  const auto is_number = [](const Json& value) { return value.is_number(); };
+  for (const Json& gap : *gaps) {
+    if (!gap.is_array() || gap.size() != 4 || !std::all_of(gap.begin(), gap.end(), is_number)) {
+      throw std::runtime_error("the header's bridged is no list of four numbers each");
+    }
+    bridged.push_back({gap[0], gap[1], gap[2], gap[3]});
+  }
+  return bridged;
+}
+
 bool same(const GeoReference& a, const GeoReference& b) {
   if (a.projection != b.projection) return false;
   if (a.projection == Projection::kUtm) return a.zone == b.zone && a.north == b.north;
@@ -56,7 +71,8 @@ bool same(const GeoReference& a, const GeoReference& b) {
 }  // namespace
 
 bool is_empty(const LineHeader& header) {
-  return header.frame_id.empty() && header.reference.projection == Projection::kNone;
+  return header.frame_id.empty() && header.reference.projection == Projection::kNone &&
+         header.bridged.empty();
 }
 
 std::string describe(const GeoReference& reference) {
@@ -85,6 +101,15 @@ std::string conflict(const LineHeader& a, const LineHeader& b) {
   return "one is in " + describe(a.reference) + ", the other in " + describe(b.reference);
 }
 
+std::string merge(LineHeader& known, const LineHeader& other) {
+  const std::string why = conflict(known, other);
+  if (!why.empty()) return why;
+  if (known.frame_id.empty()) known.frame_id = other.frame_id;
+  if (known.reference.projection == Projection::kNone) known.reference = other.reference;
+  known.bridged.insert(known.bridged.end(), other.bridged.begin(), other.bridged.end());
+  return "";
+}
+
 std::string to_json(const LineHeader& header) {
   // By hand, for the order of the keys; the library writes each value, and never fails, whatever bytes it
   // holds.
@@ -105,6 +130,11 @@ std::string to_json(const LineHeader& header) {
     add("longitude", reference.longitude);
     add("altitude", reference.altitude);
   }
+  if (!header.bridged.empty()) {
+    Json gaps = Json::array();
+    for (const BridgedGap& gap : header.bridged) gaps.push_back({gap.from_x, gap.from_y, gap.to_x, gap.to_y});
+    add("bridged", gaps);
+  }
   return R"({"header": {)" + fields + "}}";
 }
 
@@ -119,6 +149,7 @@ LineHeader parse_line_header(const std::string& json) {
     header.frame_id = frame->get<std::string>();
   }
   header.reference = parse_reference(*fields);
+  header.bridged = parse_bridged(*fields);
   return header;
 }
 

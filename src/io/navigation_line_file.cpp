@@ -10,6 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "json_stream.hpp"
+#include "relative_map/io/text.hpp"
 #include "relative_map/io/whole_file.hpp"
 
 namespace relative_map::core {
@@ -33,56 +35,10 @@ constexpr std::array<Field, 7> kFields = {{{"x", &LinePoint::x, 9},
                                            {"kappa", &LinePoint::kappa, 12},
                                            {"dkappa", &LinePoint::dkappa, 12}}};
 
-constexpr const char* kBlanks = " \t\r\n\v\f";
-
-bool is_blank(const std::string& text) {
-  return text.find_first_not_of(kBlanks) == std::string::npos;
-}
-
-/// As an array, which is a document: "{...} {...}" and "{...}, {...}" become "[{...},{...}]".
-std::string as_array(const std::string& text) {
-  std::string array = "[";
-  int depth = 0;
-  bool quoted = false, after_object = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\' && i + 1 < text.size()) array += text[i++];
-      quoted = c != '"';
-    } else if (depth == 0 && c == ',') {
-      continue;  // put in before each object but the first
-    } else if (c == '{') {
-      if (depth++ == 0 && after_object) array += ',';
-    } else if (c == '}') {
-      after_object = --depth == 0;
-    } else if (c == '"') {
-      quoted = true;
-    }
-    array += text[i];
-  }
-  return array + "]";
-}
-
-/// The objects of one line of the file. Throws std::runtime_error with a fault that the caller puts the place
-/// in front of.
-std::vector<Json> parse_objects(const std::string& text) {
-  Json value = Json::parse(text, nullptr, false);
-  if (value.is_discarded()) value = Json::parse(as_array(text), nullptr, false);
-  try {
-    if (value.is_discarded()) value = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw std::runtime_error("not valid JSON near column " + std::to_string(error.byte));
-  } catch (const Json::exception&) {  // a number that no double can hold
-    throw std::runtime_error("not valid JSON: a number is out of range");
-  }
-  if (value.is_object()) return std::vector<Json>(1, value);
-  const bool array_of_objects = value.is_array() && !value.empty() && value.front().is_object();
-  if (!array_of_objects) throw std::runtime_error("not a JSON object");
-  return std::vector<Json>(value.begin(), value.end());
-}
-
 LinePoint parse_point(const Json& object) {
-  if (!object.is_object()) throw std::runtime_error("not a JSON object");
+  if (object.contains("coordinates") || object.contains("geometry") || object.contains("features")) {
+    throw std::runtime_error("this is GeoJSON: name the file .geojson, or its format");
+  }
   LinePoint point;
   for (const Field& field : kFields) {
     const auto found = object.find(field.key);
@@ -93,6 +49,11 @@ LinePoint parse_point(const Json& object) {
   if (std::isnan(point.x)) throw std::runtime_error("x is missing");
   if (std::isnan(point.y)) throw std::runtime_error("y is missing");
   return point;
+}
+
+/// This package's, or another tool's.
+bool is_header(const Json& object) {
+  return !object.contains("x") && !object.contains("y") && !object.contains("type");
 }
 
 void write_point(std::ostream& out, const LinePoint& point) {
@@ -113,26 +74,25 @@ std::string line_name(const std::string& path) {
 }
 
 LineFile read_line_file(const std::string& path) {
-  std::istringstream in(read_whole_file(path));
+  const std::string text = read_text(path);
+  JsonStream objects(text);
   LineFile file;
   file.line.name = line_name(path);
-  bool may_be_header = true;
-  std::string text;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
-    if (is_blank(text)) continue;
+  Json object;
+  for (bool first = true;; first = false) {
     try {
-      for (const Json& object : parse_objects(text)) {
-        const bool header =
-            may_be_header && object.is_object() && !object.contains("x") && !object.contains("y");
-        may_be_header = false;
-        if (header) {
-          file.header = parse_line_header(object.dump(-1, ' ', false, Json::error_handler_t::replace));
-        } else {
-          file.line.points.push_back(parse_point(object));
-        }
+      if (!objects.next(object)) break;
+    } catch (const std::runtime_error& fault) {
+      throw std::runtime_error(path + ", " + fault.what());
+    }
+    try {
+      if (first && is_header(object)) {
+        file.header = parse_line_header(object.dump(-1, ' ', false, Json::error_handler_t::replace));
+      } else {
+        file.line.points.push_back(parse_point(object));
       }
     } catch (const std::runtime_error& fault) {
-      throw std::runtime_error(path + ", line " + std::to_string(number) + ": " + fault.what());
+      throw std::runtime_error(path + ", line " + std::to_string(objects.line()) + ": " + fault.what());
     }
   }
   if (file.line.points.empty()) throw std::runtime_error(path + ": has no points");

@@ -7,8 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -144,15 +142,64 @@ void write_whole_file(const std::string& path, const std::string& content) {
   move_into_place(temporary, path);
 }
 
-std::string read_whole_file(const std::string& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) throw std::runtime_error(path + ": is a folder, not a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw std::runtime_error(path + ": cannot be opened: " + std::strerror(errno));
-  std::ostringstream content;
-  if (stream.peek() != std::ifstream::traits_type::eof()) content << stream.rdbuf();
-  if (stream.bad() || !content) throw std::runtime_error(path + ": reading failed");
-  return content.str();
+void expect_not_among(const std::string& path, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (is_device(input)) continue;
+    if (input != path && !fs::equivalent(input, path, error)) continue;
+    throw std::runtime_error("cannot write " + path + ": it is read from as " + input +
+                             ": name another file for the result");
+  }
+}
+
+RegularFile::RegularFile(const std::string& path) : path_(path) {
+  // Without waiting: a pipe that nobody writes to would be waited for for ever.
+  descriptor_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (descriptor_ < 0) throw std::runtime_error(path + ": cannot be opened: " + std::strerror(errno));
+  struct stat found = {};
+  std::string fault;
+  if (fstat(descriptor_, &found) != 0) {
+    fault = std::string("cannot be looked at: ") + std::strerror(errno);
+  } else if (S_ISDIR(found.st_mode)) {
+    fault = "is a folder, not a file";
+  } else if (!S_ISREG(found.st_mode)) {
+    fault = "is a pipe, a device or a socket: only files are read";
+  }
+  if (fault.empty()) return;
+  ::close(descriptor_);
+  throw std::runtime_error(path + ": " + fault);
+}
+
+RegularFile::~RegularFile() {
+  ::close(descriptor_);
+}
+
+std::string RegularFile::content(std::size_t most) const {
+  std::string content;
+  std::vector<char> part(1 << 16);
+  for (;;) {
+    const ssize_t count = ::read(descriptor_, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw std::runtime_error(path_ + ": reading failed: " + std::strerror(errno));
+    if (count == 0) return content;
+    // What the file system says of the size need not hold: a file may grow, and those in /proc say 0.
+    content.append(part.data(), static_cast<std::size_t>(count));
+    if (content.size() > most) {
+      throw std::runtime_error(path_ + ": is larger than " + std::to_string(most >> 20) +
+                               " MiB, and is not read");
+    }
+  }
+}
+
+std::string RegularFile::start(std::size_t count) const {
+  std::string bytes(count, '\0');
+  const ssize_t got = pread(descriptor_, bytes.data(), count, 0);
+  bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return bytes;
+}
+
+std::string read_whole_file(const std::string& path, std::size_t most) {
+  return RegularFile(path).content(most);
 }
 
 }  // namespace relative_map::core

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <sys/stat.h>
+
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -213,7 +215,9 @@ TEST_F(LineFormats, BrokenXmlAndJsonAreNamed) {
   EXPECT_THAT(gpx("<gpx><trk><trkseg><trkpt lat=\"1\" lon=\"2\"/>"), HasSubstr("no whole XML file"));
   EXPECT_THAT(gpx("<kml/>"), HasSubstr("no element 'gpx'"));
   EXPECT_THAT(gpx("<gpx/>"), HasSubstr("has 0 tracks and routes"));
-  EXPECT_THAT(gpx("<gpx><trk/><rte/></gpx>"), HasSubstr("has 2 tracks and routes"));
+  EXPECT_THAT(gpx("<gpx><trk><trkseg><trkpt lat=\"1\" lon=\"2\"/></trkseg></trk>"
+                  "<rte><rtept lat=\"1\" lon=\"2\"/></rte></gpx>"),
+              HasSubstr("has 2 tracks and routes"));
   EXPECT_THAT(gpx("<gpx><trk/></gpx>"), HasSubstr("has no points"));
   EXPECT_THAT(gpx("<gpx><trk><trkseg>\n<trkpt lat=\"1\"/></trkseg></trk></gpx>"),
               HasSubstr("line 2: a point lacks lat or lon"));
@@ -222,7 +226,7 @@ TEST_F(LineFormats, BrokenXmlAndJsonAreNamed) {
   };
   EXPECT_THAT(geojson(""), HasSubstr("has no points"));
   EXPECT_THAT(geojson("{\"type\": \"LineString\", \"coordinates\": [[1, 2]"),
-              HasSubstr("not valid JSON near byte"));
+              HasSubstr("line 1: not valid JSON near column"));
   EXPECT_THAT(geojson("{\"type\": \"Point\"}"), HasSubstr("has 0 LineStrings"));
   EXPECT_THAT(geojson("{\"type\": \"LineString\", \"coordinates\": [[1, 2], [\"a\", 2]]}"),
               HasSubstr("position 1"));
@@ -261,7 +265,55 @@ TEST(LineHeaders, ThatHoldNonsenseAreRefused) {
   }
 }
 
+TEST(LineHeaders, AreMergedFieldByField) {
+  LineHeader known{"map", {}};
+  EXPECT_EQ(merge(known, {"", utm(32, true)}), "");
+  EXPECT_EQ(known.frame_id, "map");
+  EXPECT_EQ(merge(known, {"map", utm(33, true)}), "one is in UTM zone 32N, the other in UTM zone 33N");
+  EXPECT_EQ(known.reference.zone, 32);
+}
+
+TEST(LineHeaders, BridgedGapsAreKept) {
+  LineHeader header;
+  header.bridged = {{1.5, 2.0, 65.25, -3.0}};
+  const LineHeader back = parse_line_header(to_json(header));
+  ASSERT_EQ(back.bridged.size(), 1u);
+  EXPECT_EQ(back.bridged[0].to_x, 65.25);
+  EXPECT_NE(fault_of([] { parse_line_header(R"({"header": {"bridged": [[1, 2, 3]]}})"); }), "");
+}
+
 class WholeFile : public test::TemporaryFolder {};
+
+TEST_F(WholeFile, OnlyRegularFilesAreReadAndNeverWaitedFor) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  for (const std::string& place : {path("pipe"), std::string("/dev/zero"), std::string("/dev/null")}) {
+    EXPECT_THAT(fault_of([&] { read_whole_file(place); }), HasSubstr(place + ": is a pipe, a device"));
+    EXPECT_THAT(fault_of([&] { read_line(place, LineFormat::kGpx); }), HasSubstr("is a pipe, a device"));
+  }
+  EXPECT_THAT(fault_of([&] { read_whole_file(path(".")); }), HasSubstr("is a folder"));
+  EXPECT_NE(read_whole_file("/proc/self/status"), "");  // says that its size is 0
+}
+
+TEST_F(WholeFile, WhatIsTooLargeIsNotRead) {
+  const std::string file = write("large", "12345678");
+  EXPECT_EQ(read_whole_file(file, 8), "12345678");
+  EXPECT_THAT(fault_of([&] { read_whole_file(file, 7); }), HasSubstr("is larger than"));
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // a hole: nothing is on the disk
+  EXPECT_THAT(fault_of([&] { read_whole_file(file); }), HasSubstr("is larger than 160 MiB"));
+}
+
+TEST_F(WholeFile, AnInputIsNoOutputByAnyName) {
+  const std::string file = write("a", "a");
+  std::filesystem::create_symlink("a", path("b"));
+  std::filesystem::create_hard_link(path("a"), path("c"));
+  for (const char* name : {"a", "b", "c", "./a"}) {
+    EXPECT_THAT(fault_of([&] {
+                  expect_not_among(path(name), {path("x"), file});
+                }),
+                HasSubstr("it is read from"));
+  }
+  EXPECT_EQ(fault_of([&] { expect_not_among(path("d"), {file}); }), "");
+}
 
 TEST_F(WholeFile, AFullDiskHarmsNothing) {
   EXPECT_THAT(fault_of([] { write_whole_file("/dev/full", "text"); }),

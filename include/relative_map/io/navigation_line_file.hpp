@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "relative_map/io/line_header.hpp"
 #include "relative_map/model/inputs.hpp"
@@ -13,11 +14,13 @@ namespace relative_map::core {
 struct LineFile {
   LineHeader header;
   RecordedLine line;
+  std::vector<std::string> notes = {};  ///< what was left out of the file or seems odd in it, a sentence each
 };
 
 /// Reads a line; its name is the file's without folder and extension, its priority 0. Keys that are missing
 /// or null come back as NaN. Blank lines are skipped, and so is a first object without x and y that is not
-/// this package's header. Objects may also share a line, with or without commas, or be in an array.
+/// this package's header. Objects may also share a line, with or without commas, be in an array, or be spread
+/// over several lines.
 /// Throws std::runtime_error, one sentence that names the file, the line and the fault, if the file cannot
 /// be read or has no point, and for a line that is no JSON object, lacks x or y, or holds something that is
 /// not a number.
