@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "relative_map/geometry/segment_index.hpp"
+#include "relative_map/pipeline/lines/navigation_lines.hpp"
+#include "relative_map/tools/bridged_gaps.hpp"
 #include "relative_map/tools/editable_line.hpp"
 #include "steering.hpp"
 
@@ -21,6 +23,7 @@ constexpr double kBesideItself = 1.0;     // [m]
 constexpr double kApart = 30.0;           // [m] along the line, of what lies beside itself
 constexpr double kSampling = 2.0;         // [m] of the search for that
 constexpr double kTightCurveReach = 1.5;  // [m]
+constexpr double kBeyondEquator = 2.5e5;  // [m] that a zone's coordinates go on on the other side
 constexpr double kFar = 1000.0;           // [m] no gap, but a jump to another zone or origin
 
 template <class... Parts>
@@ -31,17 +34,29 @@ std::string sentence(const Parts&... parts) {
   return text.str();
 }
 
+/// Some way beyond the zone's borders: a line may lead over them, and over the equator.
+bool lies_in_zone(double x, double y, bool north) {
+  const double least = north ? -kBeyondEquator : 1.1e6, most = north ? 9.4e6 : 1e7 + kBeyondEquator;
+  return x > 0.0 && x < 1e6 && y > least && y < most;
+}
+
 /// Collects faults; of those in a row the worst one speaks.
 class Faults {
  public:
   void add(const std::string& kind, std::size_t point, double s, double size, const std::string& what,
            std::size_t reach = 1) {
     if (!list_.empty() && list_.back().kind == kind && point <= last_ + reach) {
-      ++list_.back().count;
-      if (size > worst_) list_.back().what = what;
-      worst_ = std::max(worst_, size);
+      LineFault& fault = list_.back();
+      ++fault.count;
+      fault.to = s;
+      if (size > worst_) {
+        fault.what = what;
+        fault.point = point;
+        fault.s = s;
+        worst_ = size;
+      }
     } else {
-      list_.push_back({kind, point, s, 1, what});
+      list_.push_back({kind, point, s, 1, what, s, s});
       worst_ = size;
     }
     last_ = point;
@@ -69,9 +84,11 @@ class Checker {
     if (check_degrees()) return faults_.take();
     check_place();
     check_steps();
-    if (points_.size() < 3) return faults_.take();
+    check_bridged();
+    check_intake();
+    if (points_.size() < 3 || distinct_points().size() < 3) return faults_.take();
     const EditableLine line = make_editable(recorded_);
-    if (line.points.size() < 3) return faults_.take();
+    given_ = distinct_points();
     const PathPoints path = path_of(line);
     check_kinks(line, path);
     check_curvature(path);
@@ -84,6 +101,41 @@ class Checker {
  private:
   Point2 position(const LinePoint& point) const {
     return Point2(point.x, point.y) - Point2(recorded_.points[0].x, recorded_.points[0].y);
+  }
+
+  /// Which of the file's points make_editable() keeps.
+  std::vector<std::size_t> distinct_points() const {
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (kept.empty() || (points_[i] - points_[kept.back()]).norm() >= kMinSpacing) kept.push_back(i);
+    }
+    return kept;
+  }
+
+  /// At a point of the line without those that are there twice.
+  void add(const std::string& kind, std::size_t i, double size, const std::string& what,
+           std::size_t reach = 1) {
+    faults_.add(kind, given_[i], s_[given_[i]], size, what, reach);
+  }
+
+  void check_bridged() {
+    for (const BridgedGap& gap : header_.bridged) {
+      if (length_of(gap) <= param_.max_gap) continue;
+      const std::size_t i = nearest_point(recorded_, gap.from_x, gap.from_y);
+      faults_.add("bridged", i, s_[i], length_of(gap),
+                  sentence("nothing was recorded for ", length_of(gap),
+                           " m from here on, and the line across is a guess"));
+    }
+  }
+
+  /// What the map node says of it.
+  void check_intake() {
+    NavigationInfo info;
+    info.lines.push_back(recorded_);
+    const auto lines = prepare_navigation_lines(info, {});
+    for (const std::string& fault : lines->faults) {
+      if (fault.find("turns back") == std::string::npos) faults_.add("node", 0, 0.0, 0.0, fault);
+    }
   }
 
   bool check_degrees() {
@@ -101,7 +153,7 @@ class Checker {
     const GeoReference& reference = header_.reference;
     for (std::size_t i = 0; i < recorded_.points.size(); ++i) {
       const double x = recorded_.points[i].x, y = recorded_.points[i].y;
-      if (reference.projection == Projection::kUtm && !(x > 0.0 && x < 1e6 && y > -1e7 && y < 2e7)) {
+      if (reference.projection == Projection::kUtm && !lies_in_zone(x, y, reference.north)) {
         faults_.add("zone", i, s_[i], 0.0,
                     sentence("x ", x, ", y ", y, " can't lie in ", describe(reference)));
       }
@@ -144,9 +196,9 @@ class Checker {
       const Point2 after = line.points[(i + 1) % count] - line.points[i];
       const double turn = std::abs(std::atan2(cross(before, after), before.dot(after)));
       if (turn > 0.5 * kPi) {
-        faults_.add("backward", i, path[i].s, turn, sentence("the line turns back by ", turn, " rad"));
+        add("backward", i, turn, sentence("the line turns back by ", turn, " rad"));
       } else if (turn > kMaxKink) {
-        faults_.add("kink", i, path[i].s, turn, sentence("the line turns by ", turn, " rad at once"));
+        add("kink", i, turn, sentence("the line turns by ", turn, " rad at once"));
       }
     }
   }
@@ -155,10 +207,10 @@ class Checker {
     for (std::size_t i = 0; i < path.size(); ++i) {
       const double kappa = std::abs(path[i].kappa);
       if (kappa <= param_.max_curvature) continue;
-      faults_.add("curvature", i, path[i].s, kappa,
-                  sentence("the curvature is ", kappa, " 1/m, and the vehicle's limit ", param_.max_curvature,
-                           " 1/m"),
-                  3);
+      add("curvature", i, kappa,
+          sentence("the curvature is ", kappa, " 1/m, and the vehicle's limit ", param_.max_curvature,
+                   " 1/m"),
+          3);
     }
   }
 
@@ -180,24 +232,21 @@ class Checker {
     for (std::size_t i = 0; i < path.size(); ++i) {
       const Steering& steering = all[i];
       if (steering.rate <= param_.max_curvature_rate || said[i]) continue;
-      faults_.add("curvature rate", i, path[i].s, steering.rate,
-                  sentence("the curvature goes from ", steering.before, " to ", steering.after,
-                           " 1/m within a metre: at ", steering.speed, " m/s by ", steering.rate,
-                           " 1/(m s), and the vehicle's limit is ", param_.max_curvature_rate),
-                  3);
+      add("curvature rate", i, steering.rate,
+          sentence("the curvature goes from ", steering.before, " to ", steering.after,
+                   " 1/m within a metre: at ", steering.speed, " m/s by ", steering.rate,
+                   " 1/(m s), and the vehicle's limit is ", param_.max_curvature_rate),
+          3);
     }
   }
 
-  /// As given, where no point was left out.
   void check_headings(const PathPoints& path) {
-    if (path.size() < recorded_.points.size() - 1) return;
     for (std::size_t i = 0; i < path.size(); ++i) {
-      const double error = std::abs(angle_difference(recorded_.points[i].theta, path[i].theta));
+      const double given = recorded_.points[given_[i]].theta;
+      const double error = std::abs(angle_difference(given, path[i].theta));
       if (!(error > kMaxHeadingError)) continue;
-      faults_.add("wrong theta", i, path[i].s, error,
-                  sentence("theta is ", recorded_.points[i].theta, " rad, but the points lead to ",
-                           path[i].theta, " rad"),
-                  5);
+      add("wrong theta", i, error,
+          sentence("theta is ", given, " rad, but the points lead to ", path[i].theta, " rad"), 5);
     }
   }
 
@@ -218,8 +267,7 @@ class Checker {
         const bool same_way = path[foot.segment].direction.dot(path[i].direction) > 0.9;
         const bool in_gap = s_of_next(path, foot.segment) - path[foot.segment].s > param_.max_gap;
         if (in_gap || apart < kApart || !same_way || path[foot.segment].s > path[i].s) continue;
-        faults_.add(
-            "overlap", i, path[i].s, 0.0,
+        add("overlap", i, 0.0,
             sentence("the line lies beside itself: it has been here at s = ", path[foot.segment].s, " m"),
             step + 1);
         step = 0;
@@ -233,14 +281,16 @@ class Checker {
   const LineCheckParam& param_;
   Polyline points_;
   std::vector<double> s_;
+  std::vector<std::size_t> given_;  ///< the points of the file that the line is made of
   Faults faults_;
 };
 
 }  // namespace
 
 std::vector<std::string> line_fault_kinds() {
-  return {"not finite", "zone", "short",     "duplicate",      "gap",         "backward s", "wrong s",
-          "backward",   "kink", "curvature", "curvature rate", "wrong theta", "overlap"};
+  return {"not finite",     "zone",        "short",    "duplicate", "gap",
+          "backward s",     "wrong s",     "backward", "kink",      "curvature",
+          "curvature rate", "wrong theta", "overlap",  "bridged",   "node"};
 }
 
 std::vector<LineFault> check_line(const RecordedLine& line, const LineHeader& header,

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "relative_map/geometry/statistics.hpp"
 
 namespace relative_map::core {
 
@@ -23,9 +26,7 @@ double direction_length(const Polyline& points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     deviations.push_back((points[i] - 0.5 * (points[i - 1] + points[i + 1])).norm());
   }
-  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  return std::max(kLeastLength, kByScatter * *middle);
+  return std::max(kLeastLength, kByScatter * median(std::move(deviations)));
 }
 
 Point2 direction_at_start(const Polyline& points) {

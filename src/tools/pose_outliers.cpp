@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "relative_map/geometry/pose2.hpp"
+#include "relative_map/geometry/statistics.hpp"
 
 namespace relative_map::core {
 
@@ -13,6 +15,7 @@ constexpr double kAcceleration = 10.0;     // [m/s^2] that no road vehicle excee
 constexpr double kLeastDeviation = 5.0;    // [m] of an outlier from its neighbours
 constexpr double kByNoise = 10.0;          // times the usual deviation
 constexpr double kNeighboursShare = 0.7;   // a single outlier makes its neighbours deviate by half as much
+constexpr std::size_t kAround = 12;        // poses before and after one, that tell what is usual there
 constexpr double kNextButOneShare = 0.25;  // and those beyond them not at all
 
 Point2 position(const RecordedPose& pose) {
@@ -39,9 +42,7 @@ std::vector<Deviation> deviations_of(const std::vector<RecordedPose>& poses) {
 double usual(const std::vector<Deviation>& deviations) {
   std::vector<double> distances;
   for (const Deviation& deviation : deviations) distances.push_back(deviation.distance);
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return median(std::move(distances));
 }
 
 }  // namespace
@@ -71,6 +72,19 @@ std::vector<PoseOutlier> find_outliers(const std::vector<RecordedPose>& poses) {
   }
   if (last_is) outliers.push_back({last, poses[last].stamp, 2.0 * all[last - 1].distance});
   return outliers;
+}
+
+double usual_deviation(const std::vector<RecordedPose>& poses, std::size_t pose) {
+  const auto at = poses.begin() + static_cast<std::ptrdiff_t>(pose);
+  const auto begin = at - static_cast<std::ptrdiff_t>(std::min(pose, kAround));
+  const auto end = at + static_cast<std::ptrdiff_t>(std::min(kAround, poses.size() - pose));
+  double greater = 0.0;
+  for (const std::vector<RecordedPose>& side : {std::vector(begin, at), std::vector(at, end)}) {
+    if (side.size() < 3) continue;
+    const std::vector<Deviation> all = deviations_of(side);
+    greater = std::max(greater, usual({all.begin() + 1, all.end() - 1}));  // the first and last have none
+  }
+  return greater;
 }
 
 std::vector<RecordedPose> without(const std::vector<RecordedPose>& poses,

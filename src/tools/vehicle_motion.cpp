@@ -4,19 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "relative_map/geometry/statistics.hpp"
+
 namespace relative_map::core {
 
 namespace {
 
-constexpr double kWindow = 1.0;          // [s] before and after a pose, that its motion is taken from
 constexpr std::size_t kLeast = 2;        // poses before and after, where they come more slowly
 constexpr std::size_t kMost = 40;        // poses that are looked at, evenly, where there are more
-constexpr double kLongestWindow = 5.0;   // [s] before and after, of these
+constexpr double kLongestWindow = 5.0;   // [s] before and after, of these, where the window is not longer
 constexpr double kSignificance = 5.0;    // standard deviations of a velocity that is no noise
 constexpr double kLeastWay = 1.0;        // [m] that motion leads: less is a receiver's drift
 constexpr double kSurely = 0.5;          // cosine of the angle between heading and motion that says which way
 constexpr double kSidewaysShare = 0.02;  // of the moving poses, that bad headings may have
 constexpr std::size_t kSidewaysPoses = 5;
+constexpr double kAbout = 0.5;       // cosine: ways that lead more against each other than this are reversed
+constexpr double kLegLength = 2.0;   // [m] of these ways, at most
+constexpr double kLeastLeg = 0.5;    // [m] shorter ones lead nowhere
+constexpr double kLegByNoise = 4.0;  // standard deviations that they must be longer than
 
 Point2 position(const RecordedPose& pose) {
   return {pose.x, pose.y};
@@ -27,22 +32,24 @@ struct Fit {
   Point2 position = Point2::Zero(), velocity = Point2::Zero();  ///< at the time 0
   double noise = 0.0;   ///< [m] of a pose's x and y, about a motion at constant acceleration
   double spread = 0.0;  ///< [s] the velocity's standard deviation is the noise divided by this
+  double count = 1.0;   ///< poses
 };
 
 class Fitter {
  public:
-  explicit Fitter(const std::vector<RecordedPose>& poses) : poses_(poses) {}
+  Fitter(const std::vector<RecordedPose>& poses, double window)
+      : poses_(poses), window_(window), longest_window_(std::max(window, kLongestWindow)) {}
 
   /// In the order of the poses.
   Fit next(std::size_t i) {
     const double now = poses_[i].stamp;
     const std::size_t last = poses_.size() - 1;
-    while (poses_[begin_].stamp < now - kWindow) ++begin_;
-    while (end_ <= last && poses_[end_].stamp <= now + kWindow) ++end_;
+    while (poses_[begin_].stamp < now - window_) ++begin_;
+    while (end_ <= last && poses_[end_].stamp <= now + window_) ++end_;
     std::size_t begin = std::min(begin_, i - std::min<std::size_t>(1, i)),
                 end = std::max(end_, std::min(i + 1, last) + 1);
-    while (begin > 0 && i - begin < kLeast && now - poses_[begin - 1].stamp <= kLongestWindow) --begin;
-    while (end <= last && end - i <= kLeast && poses_[end].stamp - now <= kLongestWindow) ++end;
+    while (begin > 0 && i - begin < kLeast && now - poses_[begin - 1].stamp <= longest_window_) --begin;
+    while (end <= last && end - i <= kLeast && poses_[end].stamp - now <= longest_window_) ++end;
     return fit(i, begin, end);
   }
 
@@ -61,6 +68,7 @@ class Fitter {
       squares += offset.squaredNorm();
     }
     Fit result;
+    result.count = normal(0, 0);
     const double count = normal(0, 0), mean_time = normal(0, 1) / count;
     const Point2 mean = right.row(0).transpose() / count;
     const double square_spread = normal(1, 1) - count * mean_time * mean_time;
@@ -78,14 +86,9 @@ class Fitter {
   }
 
   const std::vector<RecordedPose>& poses_;
+  double window_, longest_window_;  ///< [s]
   std::size_t begin_ = 0, end_ = 0;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A run of poses that seem to move is motion if it leads somewhere.
 void leave_out_drift(VehicleMotion& result) {
@@ -116,8 +119,29 @@ void judge_headings(const std::vector<RecordedPose>& poses, VehicleMotion& resul
   result.headings_used = result.sideways <= kSidewaysPoses || static_cast<double>(result.sideways) <= limit;
 }
 
+/// Where a way leads from (`step` -1: to) a pose, over a few metres.
+Point2 leg(const std::vector<PoseMotion>& poses, std::size_t from, std::ptrdiff_t step) {
+  Point2 way = Point2::Zero();
+  for (auto i = static_cast<std::ptrdiff_t>(from); i >= 0 && i < static_cast<std::ptrdiff_t>(poses.size());
+       i += step) {
+    const Point2 here = poses[static_cast<std::size_t>(i)].position - poses[from].position;
+    if (here.norm() > way.norm()) way = here;
+    if (way.norm() > kLegLength) break;
+    if (here.norm() < 0.5 * way.norm()) break;  // it comes back: the next change of gear
+  }
+  return static_cast<double>(step) * way;
+}
+
+/// No car turns about on the spot: where the ways before and after lead against each other, it has changed
+/// gear. One direction of noise, or a sharp corner, is no such place.
+bool turns_about(const std::vector<PoseMotion>& poses, std::size_t before, std::size_t after) {
+  const Point2 to = leg(poses, before, -1), from = leg(poses, after, 1);
+  const double least = std::max(kLeastLeg, kLegByNoise * (poses[before].deviation + poses[after].deviation));
+  return to.norm() > least && from.norm() > least && to.dot(from) < -kAbout * to.norm() * from.norm();
+}
+
 void tell_reversing(const std::vector<RecordedPose>& poses, VehicleMotion& result) {
-  const PoseMotion* before = nullptr;
+  std::size_t before = poses.size();  // none yet
   bool forward = true;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     PoseMotion& now = result.poses[i];
@@ -125,19 +149,20 @@ void tell_reversing(const std::vector<RecordedPose>& poses, VehicleMotion& resul
     const double cosine = result.headings_used ? along(poses[i], now) : 0.0;
     if (std::abs(cosine) > kSurely) {
       forward = cosine > 0.0;
-    } else if (before != nullptr && now.direction.dot(before->direction) < 0.0) {
-      forward = !forward;  // no car turns about between two poses: it has changed gear
+    } else if (before < poses.size() && now.direction.dot(result.poses[before].direction) < 0.0 &&
+               turns_about(result.poses, before, i)) {
+      forward = !forward;
     }
-    before = &now;
+    before = i;
     now.motion = forward ? Motion::kForward : Motion::kReversing;
   }
 }
 
 }  // namespace
 
-VehicleMotion find_motion(const std::vector<RecordedPose>& poses, double standing_speed) {
+VehicleMotion find_motion(const std::vector<RecordedPose>& poses, double standing_speed, double window) {
   VehicleMotion result;
-  Fitter fitter(poses);
+  Fitter fitter(poses, window);
   std::vector<Fit> fits;
   std::vector<double> noises;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -150,7 +175,8 @@ VehicleMotion find_motion(const std::vector<RecordedPose>& poses, double standin
     // By a few poses alone, noise may look small.
     const double noise = std::max(fit.noise, result.noise);
     const bool moves = speed > standing_speed && speed * fit.spread > kSignificance * noise;
-    PoseMotion motion{moves ? Motion::kForward : Motion::kStanding, fit.position, Point2::UnitX()};
+    PoseMotion motion{moves ? Motion::kForward : Motion::kStanding, fit.position, Point2::UnitX(), noise,
+                      noise / std::sqrt(fit.count)};
     if (moves) motion.direction = fit.velocity / speed;
     result.poses.push_back(motion);
   }

@@ -14,6 +14,8 @@ struct PoseMotion {
   Motion motion = Motion::kStanding;
   Point2 position = Point2::Zero();    ///< [m] relative to the first pose, with less noise than the pose
   Point2 direction = Point2::UnitX();  ///< unit vector of the travel, backward where it reverses
+  double noise = 0.0;                  ///< [m] standard deviation of the poses' x and y around here
+  double deviation = 0.0;              ///< [m] standard deviation of `position` by that
 };
 
 struct VehicleMotion {
@@ -24,9 +26,10 @@ struct VehicleMotion {
   bool headings_used = true;      ///< false: too many lie across
 };
 
-/// Motion is faster than `standing_speed` [m/s] and than noise seems to be, and leads somewhere. Forward and
-/// back are told apart by headings, where these make sense; else the vehicle goes forward at first, and turns
-/// about only by changing gear. `poses` are finite, and in the order of their stamps.
-VehicleMotion find_motion(const std::vector<RecordedPose>& poses, double standing_speed);
+/// Motion is faster than `standing_speed` [m/s] and than noise seems to be, and leads somewhere; it is taken
+/// from the poses within `window` [s] before and after. Forward and back are told apart by headings, where
+/// these make sense; else the vehicle goes forward at first, and reverses where its way turns about at once.
+/// `poses` are finite, and in the order of their stamps.
+VehicleMotion find_motion(const std::vector<RecordedPose>& poses, double standing_speed, double window = 1.0);
 
 }  // namespace relative_map::core

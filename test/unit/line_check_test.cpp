@@ -99,6 +99,45 @@ TEST(LineCheck, FindsACurveThatIsTooTight) {
   EXPECT_EQ(fault.count, 61u);
 }
 
+TEST(LineCheck, NamesTheWorstOfManyAtItsPlace) {
+  RoadShape road;
+  road.add_straight(20.0).add_clothoid(20.0, 0.4).add_clothoid(5.0, 0.0).add_straight(20.0);
+  RecordedLine line = road.lane(0.0, 0.5);
+  const auto of_curvature = [](const RecordedLine& recorded) {
+    for (const LineFault& fault : faults_of(recorded)) {
+      if (fault.kind == "curvature") return fault;
+    }
+    return LineFault();
+  };
+  const LineFault fault = of_curvature(line);
+  EXPECT_NEAR(fault.s, 40.0, 0.6);
+  EXPECT_GT(fault.count, 10u);
+  EXPECT_NEAR(fault.from, 32.5, 1.0);
+  EXPECT_NEAR(fault.to, 42.0, 1.0);
+  // Points that are there twice do not shift the number.
+  line.points.insert(line.points.begin() + 10, 5, line.points[10]);
+  EXPECT_EQ(of_curvature(line).point, fault.point + 5);
+}
+
+TEST(LineCheck, ABridgedGapIsAFaultUntilItIsAccepted) {
+  const RecordedLine line = recording(straight({}, 200.0, 0.5));
+  LineHeader header;
+  header.bridged = {{50.0, 0.5, 114.0, -0.5}};
+  const LineFault fault = only_fault(line, "bridged", header);
+  EXPECT_NEAR(fault.s, 50.0, 0.6);
+  EXPECT_THAT(fault.what, testing::HasSubstr("nothing was recorded for 64.01 m"));
+  LineCheckParam accepting;
+  accepting.max_gap = 70.0;
+  EXPECT_TRUE(check_line(line, header, accepting).empty());
+}
+
+TEST(LineCheck, KnowsWhatTheMapNodeRefuses) {
+  const RecordedLine far = recording(straight(Pose2({1.7e9, 10.0}, 0.0), 50.0, 1.0));
+  const std::vector<LineFault> faults = faults_of(far);
+  ASSERT_FALSE(faults.empty());
+  EXPECT_EQ(faults[0].kind, "node");
+}
+
 TEST(LineCheck, FindsACurvatureThatNoCarCanSteer) {
   RoadShape road;
   road.add_straight(50.0).add_arc(30.0, 0.06).add_straight(50.0);
@@ -177,7 +216,9 @@ TEST(LineCheck, FindsWhatIsNotFiniteAndTooShort) {
   line.points[7].y = test::kNaN;
   EXPECT_EQ(only_fault(line, "not finite").point, 7u);
   only_fault(recording({{1.0, 1.0}}), "short");
-  EXPECT_EQ(faults_of(recording({{1.0, 1.0}, {1.0, 1.0}}))[0].kind, "short");
+  for (std::size_t count : {2u, 3u, 50u}) {
+    EXPECT_EQ(faults_of(recording(Polyline(count, {1.0, 1.0})))[0].kind, "short");
+  }
 }
 
 }  // namespace

@@ -115,6 +115,85 @@ TEST(LineRecorderNoise, ReversingIsSeenThroughNoise) {
   }
 }
 
+/// A robot that goes round three sides of a block, with sharp corners.
+std::vector<RecordedPose> round_the_block(double speed, double rate) {
+  const Polyline corners = {{0.0, 0.0}, {-20.0, 60.0}, {20.0, 80.0}, {30.0, 20.0}};
+  std::vector<RecordedPose> poses;
+  double stamp = 1.7e9;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const Point2 way = corners[i] - corners[i - 1];
+    const int count = static_cast<int>(way.norm() / speed * rate);
+    for (int k = 0; k < count; ++k, stamp += 1.0 / rate) {
+      const Point2 at = corners[i - 1] + way * k / count;
+      poses.push_back({stamp, kX + at.x(), kY + at.y(), 5.0, kNaN});
+    }
+    for (int k = 0; k < static_cast<int>(2.0 * rate); ++k, stamp += 1.0 / rate) {  // it turns on the spot
+      poses.push_back({stamp, kX + corners[i].x(), kY + corners[i].y(), 5.0, kNaN});
+    }
+  }
+  return poses;
+}
+
+TEST(LineRecorderNoise, ASlowRobotInNoiseKeepsItsWay) {
+  for (double rate : {2.5, 10.0}) {
+    for (double noise : {0.08, 0.3, 0.8}) {
+      for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        SCOPED_TRACE(testing::Message() << rate << " Hz, " << noise << " m, seed " << seed);
+        const Recording recording = record_line(noisy(round_the_block(1.0, rate), noise, seed), {});
+        EXPECT_EQ(recording.fault, "");
+        EXPECT_GT(recording.way.share(), 0.85);
+        EXPECT_NEAR(recording.way.kept + recording.way.lost, 169.0, 12.0 + 30.0 * noise);
+        EXPECT_EQ(recording.reversing, 0u);
+        ASSERT_FALSE(recording.line.points.empty());
+        EXPECT_NEAR(recording.line.points.front().x - kX, 0.0, 2.0 + 4.0 * noise);
+        EXPECT_NEAR(recording.line.points.back().y - kY, 20.0, 2.0 + 4.0 * noise);
+      }
+    }
+  }
+}
+
+TEST(LineRecorderNoise, WhatScattersTooMuchIsNoLine) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    for (double rate : {1.0, 10.0}) {
+      SCOPED_TRACE(testing::Message() << rate << " Hz, seed " << seed);
+      const Recording canyon = record_line(noisy(drive({{10.0, 155.0}}, rate), 21.0, seed), {});
+      EXPECT_NE(canyon.fault, "");
+      EXPECT_THAT(canyon.fault, testing::ContainsRegex("standard deviation of (1[6-9]|2[0-3])\\."));
+      EXPECT_LT(canyon.way.share(), 0.5);
+    }
+  }
+}
+
+TEST(LineRecorderNoise, AStretchThatScattersIsAGapAndIsTold) {
+  std::vector<RecordedPose> poses = noisy(drive({{10.0, 100.0}}), 0.1);
+  const std::vector<RecordedPose> bad = noisy(drive({{10.0, 100.0}}), 21.0);
+  std::copy(bad.begin() + 400, bad.begin() + 600, poses.begin() + 400);
+  const Recording recording = record_line(poses, {});
+  EXPECT_EQ(recording.fault, "");
+  EXPECT_GT(recording.scattered, 100u);
+  EXPECT_NEAR(recording.way.share(), 0.8, 0.05);
+  double longest = 0.0;
+  for (std::size_t i = 1; i < recording.line.points.size(); ++i) {
+    longest = std::max(longest, recording.line.points[i].x - recording.line.points[i - 1].x);
+  }
+  EXPECT_NEAR(longest, 200.0, 30.0);
+}
+
+TEST(LineRecorderNoise, FixesThatAreStatedToBeBadAreLeftOut) {
+  std::vector<RecordedPose> poses = noisy(drive({{10.0, 100.0}}), 0.1);
+  for (RecordedPose& pose : poses) pose.deviation = 0.8;
+  for (std::size_t i = 400; i < 500; ++i) poses[i].deviation = 21.0;
+  const Recording recording = record_line(poses, {});
+  EXPECT_EQ(recording.fault, "");
+  EXPECT_EQ(recording.doubtful, 100u);
+  EXPECT_NEAR(recording.way.lost, 100.0, 10.0);
+  for (RecordedPose& pose : poses) pose.deviation = 21.0;
+  EXPECT_THAT(record_line(poses, {}).fault, HasSubstr("all of its 1000 poses are stated to be worse"));
+  RecorderParam careless;
+  careless.max_noise = 30.0;
+  EXPECT_EQ(record_line(poses, careless).fault, "");
+}
+
 TEST(LineRecorderNoise, IsNamedWhereItHidesAllMotion) {
   const std::string fault = record_line(noisy(drive({{0.0, 60.0}}), 1.0), {}).fault;
   EXPECT_THAT(fault, HasSubstr("the vehicle has not moved forward"));
