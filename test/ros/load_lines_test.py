@@ -4,6 +4,7 @@
 import os
 import shutil
 import tempfile
+import time
 
 import rospy
 import rostest
@@ -75,6 +76,32 @@ class LoadLines(NodeTest):
             file.write('{"x": 1, "y": 2}\n')
         self.expect_refusal([short], 'fewer than two distinct points')
         self.three_lanes()
+
+    def test_a_pipe_a_device_and_a_relative_path_hold_nothing_up(self):
+        self.drive()
+        good = self.line('good', 0.0)
+        pipe = os.path.join(self.folder, 'pipe.smoothed')
+        os.mkfifo(pipe)
+        start = time.monotonic()
+        for place in (pipe, '/dev/zero', '/dev/tty'):
+            self.expect_refusal([good, place], place)
+        self.expect_refusal(['good.smoothed'], "'good.smoothed' must be an absolute path")
+        with open(os.path.join(self.folder, 'huge.csv'), 'w') as file:
+            file.truncate(1 << 40)
+        self.expect_refusal([file.name], 'is larger than')
+        self.assertLess(time.monotonic() - start, 10.0)  # for ever, and all of the memory, before
+        self.assertTrue(self.load([good]).success)
+
+    def test_the_service_keeps_to_its_folder(self):
+        inside = os.path.join(self.folder, 'lines')
+        os.mkdir(inside)
+        outside = self.line('outside', 0.0)
+        good = self.line('lines/good', 0.0)
+        os.symlink(outside, os.path.join(inside, 'link.smoothed'))
+        self.start(parameters={'navigation_lines_folder': inside})
+        self.assertTrue(self.load([good]).success)
+        for path in (outside, inside + '/../outside.smoothed', inside + '/link.smoothed', '/etc/passwd', '/absent'):
+            self.expect_refusal([path], "'%s' does not lie in %s" % (path, inside))
 
     def test_a_bad_file_in_the_parameter_keeps_it_from_starting(self):
         self.addCleanup(self._forget_parameters)

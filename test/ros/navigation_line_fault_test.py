@@ -29,7 +29,7 @@ class NavigationLineFaults(ToolTest):
                             (('smooth', 'good.smoothed'), 'IN and OUT must be named'),
                             (('smooth', 'a', 'b', 'c'), "unexpected argument 'c'"),
                             (('smooth', 'good.smoothed', 'old.smoothed', '--bond', '1'), 'unknown option --bond'),
-                            (('smooth', 'good.smoothed', 'old.smoothed', '--bound'), '--bound lacks a value'),
+                            (('smooth', 'good.smoothed', 'old.smoothed', '--bound'), '--bound needs a value'),
                             (('smooth', 'good.smoothed', 'old.smoothed', '--bound', 'x'), "must be a number, not 'x'"),
                             (('smooth', 'good.smoothed', 'old.smoothed', '--bound', '-1'), '--bound is -1'),
                             (('convert', 'good.smoothed', 'old.dat'), 'its format is not known'),

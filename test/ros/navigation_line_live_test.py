@@ -2,6 +2,7 @@
 """`navigation_line publish` for those that come later, and `record --live` from what is published."""
 
 import json
+import os
 import signal
 import subprocess
 import threading
@@ -95,6 +96,60 @@ class NavigationLineLive(ToolTest):
         self.assertEqual(process.wait(20.0), 1)
         self.assertIn("there is no transform from that to 'axle'", process.stdout.read())
         self.assertEqual(self.contents(), {})
+
+    def record_some(self, publisher, count=400):
+        start = rospy.Time.now()
+        for step in range(count):
+            publisher.publish(odometry(start + rospy.Duration(step / 20.0), *way(step)))
+            rospy.sleep(0.005)
+
+    def start_recording(self, topic):
+        publisher = rospy.Publisher(topic, Odometry, queue_size=1000)
+        self.addCleanup(publisher.unregister)
+        process = self.start('record', '--live', 'line.smoothed', '--topic', topic)
+        wait_for(lambda: publisher.get_num_connections() > 0, 'subscriber')
+        return publisher, process
+
+    def test_every_signal_that_ends_it_keeps_the_drive(self):
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            publisher, process = self.start_recording('drive_%d' % number)
+            self.record_some(publisher)
+            rospy.sleep(1.0)
+            process.send_signal(number)
+            self.assertEqual(process.wait(20.0), 0, process.stdout.read())
+            self.assertGreater(len(self.points()), 300)
+            self.assertEqual(os.listdir(self.folder), ['line.smoothed'])
+            os.remove(self.path('line.smoothed'))
+
+    def test_power_loss_keeps_all_but_the_last_second(self):
+        publisher, process = self.start_recording('lost_drive')
+        self.record_some(publisher)
+        rospy.sleep(1.5)
+        self.record_some(publisher, 1)  # a second later: what was before is on the disk
+        rospy.sleep(0.5)
+        process.kill()
+        process.wait(20.0)
+        journal = 'line.smoothed.recording.bag'
+        self.assertEqual(os.listdir(self.folder), [journal])
+        run = self.run_tool('record', '--live', 'line.smoothed', '--topic', 'lost_drive', master=True)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn(journal + ' is left of a recording that was cut off', run.stderr)
+        subprocess.check_call(['rosbag', 'reindex', journal], cwd=self.folder, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL)
+        self.expect('record', journal, 'line.smoothed')
+        self.assertGreater(len(self.points()), 300)
+
+    def test_a_drive_that_cannot_become_a_line_is_kept_as_it_came(self):
+        publisher, process = self.start_recording('parked')
+        start = rospy.Time.now()
+        for step in range(200):
+            publisher.publish(odometry(start + rospy.Duration(step / 20.0), 1.0, 2.0))
+            rospy.sleep(0.005)
+        rospy.sleep(0.5)
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(20.0), 1)
+        self.assertIn('what was received is kept in line.smoothed.recording.bag', process.stdout.read())
+        self.expect_fault('record', 'line.smoothed.recording.bag', 'line.smoothed', says=('has not moved forward',))
 
     def test_nothing_to_record_is_said(self):
         run = self.run_tool('record', '--live', 'line.smoothed', '--topic', 'nobody', '--duration', '1', master=True)

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """What `navigation_line record` makes of poses of other links, of orientations, and of receivers' errors."""
 
-import json
 import math
+import os
 import random
 
+import rosbag
+import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import Quaternion
@@ -43,10 +45,6 @@ def static_transforms(child='imu_link', parent='base_link'):
 
 
 class NavigationLineRecord(ToolTest):
-    def points(self, name='line.smoothed'):
-        objects = [json.loads(line) for line in self.read(name).splitlines()]
-        return [entry for entry in objects if 'x' in entry]
-
     def record_line(self, entries, *options):
         self.record('in.bag', entries)
         return self.expect('record', 'in.bag', 'line.smoothed', *options)
@@ -132,6 +130,113 @@ class NavigationLineRecord(ToolTest):
             message.header.stamp = stamp
         text = self.record_line(list(self.parked(0.5)) + later)
         self.assertRegex(text, r' (59\d|60\d) of them standing, 0 reversing \(0 points taken back\)')
+
+    def test_a_clock_that_is_set_loses_nothing_and_is_told(self):
+        for what, wrong, told in (('1980', lambda step: -1384035200 if 150 <= step < 190 else 0, 'set back by 13840352'),
+                                  ('0.5 s', lambda step: -0.5 if step >= 150 else 0, 'set back by 0.5'),
+                                  ('2 s', lambda step: -2 if step >= 150 else 0, 'set back by 2.0'),
+                                  ('1 h', lambda step: -3600 if step >= 150 else 0, 'set back by 3600')):
+            with self.subTest(what):
+                entries = list(drive('/pose', odometry))
+                for step, (_, message, stamp) in enumerate(entries):
+                    message.header.stamp = stamp + rospy.Duration(wrong(step))
+                text = self.record_line(entries)
+                self.expect_way_of_base()
+                self.assertIn(told, text)
+                self.assertIn('(100 %)', text)
+
+    def test_a_recorder_whose_clock_was_set_too(self):
+        for back in (0.5, 2.0, 3600.0):
+            entries = []
+            for step, (topic, message, stamp) in enumerate(drive('/pose', odometry)):
+                stamp -= rospy.Duration(back if step >= 150 else 0)
+                message.header.stamp, message.header.seq = stamp, step
+                entries.append((topic, message, stamp))
+            text = self.record_line(entries)
+            self.expect_way_of_base()
+            self.assertIn('set back by %.1f' % back, text)
+            if back > 3.0:
+                continue  # no message lies among others: the order is that of a drive
+            for _, message, _ in entries:
+                message.header.seq = 0
+            self.refuse(entries, 'two sources on one topic, or the clock of the recording was set back')
+
+    def two_receivers(self, frames=('', ''), publishers=(None, None)):
+        for step in range(400):
+            for number in range(2):
+                stamp = START + rospy.Duration(step / 10.0 + 0.02 * number)
+                message = fix(stamp, 48.1 + 1e-5 * number, 11.5 + 6.7e-6 * step)
+                message.header.frame_id = frames[number]
+                header = {'callerid': publishers[number]} if publishers[number] else None
+                yield '/fix', message, stamp, header
+
+    def write_two_receivers(self, **options):
+        connections = {}  # by publisher, as `rosbag record` has them: rosbag itself has one a topic
+        with rosbag.Bag(self.path('in.bag'), 'w') as bag:
+            for topic, message, stamp, header in self.two_receivers(**options):
+                publisher = header['callerid'] if header else ''
+                bag._topic_connections.pop(topic, None)
+                if publisher in connections:
+                    bag._topic_connections[topic] = connections[publisher]
+                if header:
+                    header.update(topic=topic, type=message._type, md5sum=message._md5sum,
+                                  message_definition=message._full_text)
+                bag.write(topic, message, stamp, connection_header=header)
+                connections[publisher] = bag._topic_connections[topic]
+
+    def test_two_receivers_on_one_topic_are_named(self):
+        self.write_two_receivers()
+        self.expect_fault('record', 'in.bag', 'line.smoothed', says=('there are two sources on one topic',))
+        self.write_two_receivers(frames=('front', 'rear'))
+        self.expect_fault('record', 'in.bag', 'line.smoothed', says=("frame 'front'", "frame 'rear'", '--source'))
+        self.write_two_receivers(publishers=('/left', '/right'))
+        self.expect_fault('record', 'in.bag', 'line.smoothed', says=("'/left'", "'/right'", '--source'))
+        text = self.expect('record', 'in.bag', 'line.smoothed', '--source', '/left')
+        self.assertIn('400 poses of other sources left out', text)
+        self.assertGreater(len(self.points()), 190)  # each second one is half a metre on
+
+    def test_noisy_fixes_are_told_and_a_canyon_is_refused(self):
+        draw = random.Random(3)
+        entries = list(fixes(count=600))
+        for _, message, _ in entries:
+            message.position_covariance[0] = message.position_covariance[4] = 0.64
+            message.position_covariance_type = 2
+        self.assertIn('a standard deviation of 0.80 m', self.record_line(entries))
+        for _, message, _ in entries:
+            message.latitude += draw.gauss(0.0, 21.0 / 111e3)
+            message.longitude += draw.gauss(0.0, 21.0 / 74e3)
+        self.refuse(entries, 'of the way', 'can become a line: the poses scatter by a standard deviation of 2')
+        for _, message, _ in entries:
+            message.position_covariance[0] = message.position_covariance[4] = 441.0
+        self.refuse(entries, 'all of its 600 poses are stated to be worse than the limit')
+
+    def test_a_bridged_gap_stays_a_fault_until_it_is_accepted(self):
+        entries = [entry for step, entry in enumerate(fixes(count=600)) if not 150 <= step < 280]
+        self.record_line(entries, '--local')
+        self.assertIn('gap at point', self.run_tool('check', 'line.smoothed').stdout)
+        self.expect('smooth', 'line.smoothed', 'lane.smoothed')
+        self.expect('offset', 'lane.smoothed', 'left.smoothed', '--distance=3.5')
+        self.expect('convert', 'left.smoothed', 'left.csv')
+        for name in ('lane.smoothed', 'left.smoothed', 'left.csv'):
+            run = self.run_tool('check', name)
+            self.assertEqual(run.returncode, 1)
+            self.assertRegex(run.stdout, name + r': bridged at point \d+, s = 7\d.\d m: nothing was recorded for 65')
+            self.expect('check', name, '--max-gap', '80')
+        self.expect('smooth', 'line.smoothed', 'accepted.smoothed', '--max-gap', '80')
+        self.expect('check', 'accepted.smoothed')
+
+    def test_a_real_bag_of_a_robot(self):
+        data = os.environ.get('RELATIVE_MAP_REFERENCE_DATA',
+                              os.path.join(roslib.packages.get_pkg_dir('relative_map'), '../shared/reference'))
+        bag = os.path.join(data, 'localization/husky_bag/test1.bag')
+        if not os.path.exists(bag):
+            self.skipTest('the recorded bag is not here: ' + bag)
+        text = self.expect('record', bag, 'line.smoothed', '--topic', '/fix', '--local')
+        xs, ys = zip(*((point['x'], point['y']) for point in self.points()))
+        self.assertAlmostEqual(max(xs) - min(xs), 58.0, delta=1.5)
+        self.assertAlmostEqual(max(ys) - min(ys), 145.0, delta=1.5)
+        self.assertRegex(text, r'of the way are kept \(9[0-9] %\)')
+        self.assertIn('the receiver states a standard deviation of 0.80 m', text)
 
     def test_an_outlier_is_dropped_and_told(self):
         entries = list(drive('/pose', odometry))

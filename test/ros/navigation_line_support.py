@@ -1,5 +1,6 @@
 """What the tests of `navigation_line` share: bags of a drive, files, and runs of the tool on them."""
 
+import json
 import math
 import os
 import shutil
@@ -109,6 +110,10 @@ class ToolTest(unittest.TestCase):
         options = dict({'env': environment}, **options)
         return subprocess.run(self.command(*words), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               universal_newlines=True, timeout=60, **options)
+
+    def points(self, name='line.smoothed'):
+        objects = [json.loads(line) for line in self.read(name).splitlines()]
+        return [entry for entry in objects if 'x' in entry]
 
     def expect(self, *words):
         """A run that must succeed; what it prints."""

@@ -95,7 +95,7 @@ class NavigationLine(ToolTest):
         self.assertAlmostEqual(self.points('both.smoothed')[-1]['s'], 151.0)
         self.expect('resample', 'a.smoothed', 'thin.smoothed', '--by-curvature')
         self.assertAlmostEqual(self.points('thin.smoothed')[1]['s'], 3.0)
-        self.expect('resample', 'a.smoothed', 'a.smoothed', '--spacing', '1')  # onto itself
+        self.expect('resample', 'a.smoothed', 'a.smoothed', '--spacing', '1', '--replace')  # onto itself
         self.assertEqual(len(self.points('a.smoothed')), 101)
 
     def test_closes_a_lap(self):

@@ -171,8 +171,8 @@ class ReplayFaults(ReplayTest):
         self.expect_usage_fault('two bags are needed: IN.bag and OUT.bag', 'in.bag', 'out.bag', 'more.bag')
         self.expect_usage_fault('unknown option --rate', 'in.bag', 'out.bag', '--rate', '20')
         self.expect_usage_fault('unknown option -c', 'in.bag', 'out.bag', '-c', 'config.yaml')
-        self.expect_usage_fault('--config needs a file', 'in.bag', 'out.bag', '--config')
-        self.expect_usage_fault('--urdf needs a file', 'in.bag', 'out.bag', '--urdf')
+        self.expect_usage_fault('--config needs a value', 'in.bag', 'out.bag', '--config')
+        self.expect_usage_fault('--urdf needs a value', 'in.bag', 'out.bag', '--urdf')
         self.assertEqual(self.files(), before)
 
     def test_a_configuration_that_cannot_be_read(self):

@@ -39,6 +39,9 @@ void open_bag(const std::string& path, rosbag::Bag& bag) {
   };
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) refuse("it is a folder");
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    refuse("it is a pipe or a device, and no file");  // opening one could wait for ever
+  }
   if (access(path.c_str(), R_OK) != 0) refuse(std::strerror(errno));
   if (std::filesystem::file_size(path, error) == 0 && !error) refuse("it is empty");
   try {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "bag_input.hpp"
@@ -19,6 +20,14 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kDefaultTopic = "/navigation_line";
 constexpr const char* kHeaderSuffix = "_header";
+
+std::string named(const std::string& topic) {
+  return topic.empty() ? kDefaultTopic : topic;
+}
+
+std::set<std::string> topics_of(const std::string& name) {
+  return {name, name + kHeaderSuffix};
+}
 
 }  // namespace
 
@@ -39,7 +48,9 @@ core::LineFile read_path_bag(const std::string& path, const std::string& topic) 
         }
         file.header.frame_id = frame_name(message->header.frame_id);
       } else if (const std_msgs::StringConstPtr header = instance.instantiate<std_msgs::String>()) {
-        file.header.reference = core::parse_line_header(header->data).reference;
+        const std::string frame = file.header.frame_id;
+        file.header = core::parse_line_header(header->data);
+        if (!frame.empty()) file.header.frame_id = frame;
       }
     }
   } catch (const std::exception& fault) {
@@ -49,9 +60,13 @@ core::LineFile read_path_bag(const std::string& path, const std::string& topic) 
   return file;
 }
 
+void expect_path_bag_writable(const std::string& path, const std::string& topic) {
+  expect_bag_writable(path, topics_of(named(topic)));
+}
+
 void write_path_bag(const std::string& path, const std::string& topic, const core::LineFile& file) {
   core::expect_finite_positions(path, file.line);
-  const std::string name = topic.empty() ? kDefaultTopic : topic;
+  const std::string name = named(topic);
   nav_msgs::Path message;
   message.header.frame_id = file.header.frame_id.empty() ? "map" : file.header.frame_id;
   for (const core::LinePoint& point : file.line.points) {
@@ -66,7 +81,7 @@ void write_path_bag(const std::string& path, const std::string& topic, const cor
     message.poses.push_back(pose);
   }
   const ros::Time now(ros::WallTime::now().toSec());
-  WholeBag bag(path);
+  WholeBag bag(path, topics_of(name));
   bag.write(name, now, message);
   if (!core::is_empty(file.header)) {
     std_msgs::String header;

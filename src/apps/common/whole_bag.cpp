@@ -1,19 +1,57 @@
 #include "whole_bag.hpp"
 
+#include <rosbag/view.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
 #include "relative_map/io/whole_file.hpp"
 
 namespace relative_map {
 
-void expect_bag_writable(const std::string& path) {
+namespace {
+
+const std::string kBagMagic = "#ROSBAG V";
+
+[[noreturn]] void keep(const std::string& path, const std::string& why) {
+  throw std::runtime_error("cannot write " + path + ": " + why + ": name another file, or remove it first");
+}
+
+/// Throws if the bag at `path`, if there is one, may be somebody's recording.
+void expect_replaceable(const std::string& path, const std::set<std::string>& topics) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  if (core::RegularFile(path).start(kBagMagic.size()) != kBagMagic)
+    return;  // no bag: it was named, so it goes
+  rosbag::Bag bag;
+  try {
+    bag.open(path, rosbag::bagmode::Read);
+  } catch (const rosbag::BagException&) {
+    keep(path, "a bag is there that was cut off, or is still recorded to");
+  }
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+    if (topics.count(connection->topic) == 0) {
+      keep(path, "a bag is there that holds " + connection->topic + " (" + connection->datatype + ")");
+    }
+    // `rosbag record` notes who published; what this package's tools write was published by nobody.
+    if (connection->header && connection->header->count("callerid") > 0) {
+      keep(path, "a bag is there that was recorded from " + connection->header->at("callerid"));
+    }
+  }
+}
+
+}  // namespace
+
+void expect_bag_writable(const std::string& path, const std::set<std::string>& topics) {
   core::expect_writable(path);
-  if (!core::is_device(path)) return;
-  throw std::runtime_error("cannot write " + path + ": a bag needs a file, and this is a device or a pipe");
+  if (core::is_device(path)) {
+    throw std::runtime_error("cannot write " + path + ": a bag needs a file, and this is a device or a pipe");
+  }
+  expect_replaceable(path, topics);
 }
 
 namespace {
@@ -23,6 +61,7 @@ sigset_t interrupts() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGHUP);
   return set;
 }
 
@@ -40,11 +79,15 @@ DeferredInterrupts::~DeferredInterrupts() {
 bool DeferredInterrupts::pending() const {
   sigset_t waiting;
   sigpending(&waiting);
-  return sigismember(&waiting, SIGINT) == 1 || sigismember(&waiting, SIGTERM) == 1;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (sigismember(&waiting, signal) == 1) return true;
+  }
+  return false;
 }
 
-WholeBag::WholeBag(const std::string& path) : path_(path), temporary_(core::temporary_name(path)) {
-  expect_bag_writable(path);
+WholeBag::WholeBag(const std::string& path, const std::set<std::string>& topics)
+    : path_(path), temporary_(core::temporary_name(path)) {
+  expect_bag_writable(path, topics);
   bag_ = std::make_unique<rosbag::Bag>();
   errno = 0;
   try {

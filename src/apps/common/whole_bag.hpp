@@ -5,16 +5,18 @@
 
 #include <exception>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 
 namespace relative_map {
 
-/// Throws what WholeBag's constructor would for a path that no bag can be written to, and writes nothing.
-void expect_bag_writable(const std::string& path);
+/// Throws what WholeBag's constructor would for a path that no bag of these topics can be written to, and
+/// writes nothing.
+void expect_bag_writable(const std::string& path, const std::set<std::string>& topics);
 
-/// SIGINT and SIGTERM wait until this goes, so that what was begun can be cleared away before they end the
-/// process.
+/// SIGINT, SIGTERM and SIGHUP wait until this goes, so that what was begun can be cleared away before they
+/// end the process.
 class DeferredInterrupts {
  public:
   DeferredInterrupts();
@@ -29,10 +31,12 @@ class DeferredInterrupts {
 
 /// A bag that comes out whole or not at all: it is written beside its place, and moved there when it is
 /// closed. Everything throws std::runtime_error, one sentence with the path and the fault; what was at the
-/// place is then untouched, and nothing is left beside it, as after an interrupt.
+/// place is then untouched, and nothing is left beside it, as after an interrupt. A bag that is there already
+/// is replaced only if a tool like this one made it: one that holds a topic other than `topics`, or was
+/// recorded from a node, is somebody's drive.
 class WholeBag {
  public:
-  explicit WholeBag(const std::string& path);
+  WholeBag(const std::string& path, const std::set<std::string>& topics);
   /// Without close() nothing comes out.
   ~WholeBag();
   WholeBag(const WholeBag&) = delete;

@@ -4,13 +4,13 @@
 #include <rosbag/view.h>
 
 #include <cstdio>
-#include <iostream>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bag_input.hpp"
+#include "command_line.hpp"
 #include "relative_map/ros/messages/message_check.hpp"
 
 namespace relative_map {
@@ -31,19 +31,11 @@ struct Arguments {
 };
 
 Arguments parse(const std::vector<std::string>& words) {
+  const CommandLine line(words, {"--topic", "--frame"});
   Arguments arguments;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--topic" || words[i] == "--frame") {
-      if (i + 1 == words.size()) throw std::runtime_error(words[i] + " needs a value");
-      (words[i] == "--topic" ? arguments.topic : arguments.frame) = words[i + 1];
-      ++i;
-    } else if (words[i].rfind("--", 0) == 0 || !arguments.bag.empty()) {
-      throw std::runtime_error("unexpected argument '" + words[i] + "'; see --help");
-    } else {
-      arguments.bag = words[i];
-    }
-  }
-  if (arguments.bag.empty()) throw std::runtime_error("a bag is needed; see --help");
+  arguments.bag = line.files(1, 1, "a bag")[0];
+  arguments.topic = line.text("--topic", arguments.topic);
+  arguments.frame = line.text("--frame", arguments.frame);
   return arguments;
 }
 
@@ -93,8 +85,8 @@ class Table {
   std::size_t maps_ = 0, empty_ = 0;
 };
 
-/// The number of broken rows.
-std::size_t run(const Arguments& arguments) {
+int run(const std::vector<std::string>& words) {
+  const Arguments arguments = parse(words);
   rosbag::Bag bag;
   open_bag(arguments.bag, bag);
   Table table;
@@ -110,22 +102,12 @@ std::size_t run(const Arguments& arguments) {
   }
   if (table.maps() == 0) throw std::runtime_error(arguments.bag + ": there is no map on " + arguments.topic);
   table.print();
-  return table.broken_rows();
+  return table.broken_rows() == 0 ? 0 : 1;
 }
 
 }  // namespace
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
-    std::cout << relative_map::kUsage;
-    return 0;
-  }
-  try {
-    return relative_map::run(relative_map::parse(words)) == 0 ? 0 : 1;
-  } catch (const std::exception& fault) {
-    std::cerr << "check_maps: " << fault.what() << "\n";
-    return 2;
-  }
+  return relative_map::run_tool("check_maps", relative_map::kUsage, argc, argv, relative_map::run, 2);
 }

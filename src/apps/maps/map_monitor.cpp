@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "orderly_end.hpp"
 #include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "relative_map/ros/health/diagnostics.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
@@ -103,6 +104,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   ros::init(argc, argv, "map_monitor", ros::init_options::AnonymousName);
+  relative_map::end_in_order();
   const relative_map::MapMonitor monitor{ros::NodeHandle(), ros::NodeHandle("~")};
   ros::spin();
   return monitor.summary();

@@ -2,21 +2,21 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <tf2/buffer_core.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
-#include <sstream>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bag_input.hpp"
+#include "command_line.hpp"
+#include "relative_map/io/text.hpp"
+#include "relative_map/io/whole_file.hpp"
 #include "relative_map/ros/health/diagnostics.hpp"
 #include "relative_map/ros/map/map_engine.hpp"
 #include "relative_map/ros/setup/line_loader.hpp"
@@ -41,6 +41,7 @@ constexpr const char* kUsage =
     "only.\n";
 
 constexpr double kLongestPause = 60.0;  // [s] without input that is filled with empty maps
+const std::set<std::string> kTopics = {"/relative_map"};
 
 /// [s] Exact, and of any size: ros::Duration holds 68 years, and throws where a stamp is scrap.
 double seconds_between(const ros::Time& from, const ros::Time& to) {
@@ -51,63 +52,18 @@ struct Arguments {
   std::string input, output, config, urdf;
 };
 
-/// A call that can't be carried out as it was written.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 Arguments parse(const std::vector<std::string>& words) {
-  Arguments arguments;
-  std::vector<std::string> files;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--config" || words[i] == "--urdf") {
-      if (i + 1 == words.size()) throw UsageError(words[i] + " needs a file");
-      (words[i] == "--config" ? arguments.config : arguments.urdf) = words[i + 1];
-      ++i;
-    } else if (words[i].size() > 1 && words[i].front() == '-') {
-      throw UsageError("unknown option " + words[i]);
-    } else {
-      files.push_back(words[i]);
-    }
-  }
-  if (files.size() != 2) throw UsageError("two bags are needed: IN.bag and OUT.bag");
-  arguments.input = files[0];
-  arguments.output = files[1];
-  std::error_code not_there;
-  if (arguments.input == arguments.output ||
-      std::filesystem::equivalent(arguments.input, arguments.output, not_there)) {
+  const CommandLine line(words, {"--config", "--urdf"});
+  if (line.files().size() != 2) throw UsageError("two bags are needed: IN.bag and OUT.bag");
+  Arguments arguments{line.files()[0], line.files()[1], line.text("--config"), line.text("--urdf")};
+  try {
+    core::expect_not_among(arguments.output, {arguments.input});
+  } catch (const std::runtime_error&) {
     throw UsageError("IN.bag and OUT.bag are the same file");
   }
+  core::expect_not_among(arguments.output, {arguments.config, arguments.urdf});
   return arguments;
 }
-
-std::string read_file(const std::string& file) {
-  std::ifstream stream(file);
-  std::stringstream text;
-  if (!stream || !(text << stream.rdbuf())) throw std::runtime_error(file + ": can't be read, or is empty");
-  return text.str();
-}
-
-/// A bar on a terminal; silent elsewhere.
-class ProgressBar {
- public:
-  explicit ProgressBar(double length) : length_(length), shown_(isatty(STDERR_FILENO) != 0) {}
-  ~ProgressBar() {
-    if (shown_) std::fputs("\n", stderr);
-  }
-  void show(double done) {
-    const int percent = length_ > 0.0 ? static_cast<int>(100.0 * done / length_) : 100;
-    if (!shown_ || percent == last_percent_) return;
-    last_percent_ = percent;
-    const std::string bar(static_cast<std::size_t>(percent / 2), '#');
-    std::fprintf(stderr, "\r[%-50s] %3d %%", bar.c_str(), percent);
-  }
-
- private:
-  double length_;
-  bool shown_;
-  int last_percent_ = -1;
-};
 
 class Replay {
  public:
@@ -131,7 +87,8 @@ class Replay {
           "it has none of the topics /navigation, /localization, /chassis, /perception/lane_markers");
     }
     const ros::Time start = view.getBeginTime();
-    ProgressBar progress(seconds_between(start, view.getEndTime()));
+    const double length = seconds_between(start, view.getEndTime());
+    ProgressBar progress;
     std::uint64_t tick = 0;
     // Computed from the start each time: a sum of periods would drift.
     const auto tick_time = [&] {
@@ -152,7 +109,7 @@ class Replay {
       for (; tick_time() < now; ++tick) publish(tick_time());
       deliver(message);
       last = now;
-      progress.show(seconds_between(start, now));
+      progress.show(length > 0.0 ? seconds_between(start, now) / length : 1.0);
     }
     for (; tick_time() <= view.getEndTime(); ++tick) publish(tick_time());
   }
@@ -212,16 +169,17 @@ std::shared_ptr<const core::NavigationLines> configured_lines(const std::string&
   return lines;
 }
 
-void run(const Arguments& arguments) {
+int run(const std::vector<std::string>& words) {
+  const Arguments arguments = parse(words);
   const ParameterSet parameters = arguments.config.empty() ? ParameterSet() : read_yaml(arguments.config);
-  const std::string urdf = arguments.urdf.empty() ? "" : read_file(arguments.urdf);
+  const std::string urdf = arguments.urdf.empty() ? "" : core::read_text(arguments.urdf);
   const NodeConfig config = make_node_config(parameters, urdf);
   const auto lines = configured_lines(arguments.config, config);
 
-  expect_bag_writable(arguments.output);
+  expect_bag_writable(arguments.output, kTopics);
   rosbag::Bag input;
   open_bag(arguments.input, input);
-  WholeBag output(arguments.output);
+  WholeBag output(arguments.output, kTopics);
   Replay replay(config, input, output);
   if (lines) replay.set_lines(lines);
   const auto start = std::chrono::steady_clock::now();
@@ -232,25 +190,12 @@ void run(const Arguments& arguments) {
     throw std::runtime_error(arguments.input + ": can't be replayed: " + fault.what());
   }
   replay.print_summary(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return 0;
 }
 
 }  // namespace
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
-    std::cout << relative_map::kUsage;
-    return 0;
-  }
-  try {
-    relative_map::run(relative_map::parse(words));
-  } catch (const relative_map::UsageError& fault) {
-    std::cerr << "replay: " << fault.what() << "\n\n" << relative_map::kUsage;
-    return 2;
-  } catch (const std::exception& fault) {
-    std::cerr << "replay: " << fault.what() << "\n";
-    return 1;
-  }
-  return 0;
+  return relative_map::run_tool("replay", relative_map::kUsage, argc, argv, relative_map::run);
 }

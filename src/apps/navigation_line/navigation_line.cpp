@@ -26,7 +26,8 @@ Subcommands; each explains itself with --help:
 
 constexpr const char* kFormats = R"(
 Files are known by their extensions: .smoothed (one JSON object a line; also .jsonl, .txt), .json (all on one line),
-.csv, .gpx, .geojson, .bag (nav_msgs/Path). A file is written whole or not at all.
+.csv, .gpx, .geojson, .bag (nav_msgs/Path). A file is written whole or not at all. OUT must not be IN, unless --replace
+says so (but for record), and no bag that holds anything else than a line.
 Exit codes: 0 done, 1 failed or faults found, 2 bad arguments.
 )";
 

@@ -1,7 +1,10 @@
 // Subcommands of navigation_line that make a new file of others.
-#include <iostream>
+#include <cmath>
+#include <filesystem>
 
 #include "navigation_line_command.hpp"
+#include "relative_map/tools/bridged_gaps.hpp"
+#include "relative_map/tools/line_check.hpp"
 #include "relative_map/tools/line_edit.hpp"
 
 namespace relative_map {
@@ -12,14 +15,21 @@ using Words = std::vector<std::string>;
 
 constexpr double kAnyLength = 1e7;  // [m]
 
-/// Reads IN, has `edit` make a line of it, and writes OUT under the same header.
+double max_gap_of(const CommandLine& line) {
+  return line.number("--max-gap", core::LineCheckParam().max_gap, 0.01, 1e4);
+}
+
+/// Reads IN, has `edit` make a line of it, whose points lie up to `beside` [m] beside, and writes OUT under
+/// the same header.
 template <class Edit>
-int edit_file(const CommandLine& line, Edit edit) {
+int edit_file(const CommandLine& line, Edit edit, double beside = 0.0) {
   const Words& files = line.files(2, 2, "IN and OUT");
-  expect_savable(files[1]);
+  expect_savable(files[1], may_replace(line) ? Words() : Words{files[0]});
   core::LineFile file = load_line(files[0]);
   try {
+    std::vector<core::BridgedGap> gaps = core::all_gaps(file, max_gap_of(line));
     file.line = core::make_recorded(edit(core::make_editable(file.line)));
+    file.header.bridged = core::still_bridged(gaps, file.line, beside + core::kBesideGap);
   } catch (const UsageError&) {
     throw;
   } catch (const std::runtime_error& fault) {
@@ -31,7 +41,7 @@ int edit_file(const CommandLine& line, Edit edit) {
 }
 
 int run_resample(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--spacing"}, {"--by-curvature"});
+  const CommandLine line(words, {"--spacing", "--max-gap"}, {"--by-curvature", kReplace});
   if (line.has("--spacing") == line.has("--by-curvature")) {
     throw UsageError("either --spacing or --by-curvature must be given");
   }
@@ -43,24 +53,26 @@ int run_resample(const Words& words, const Remappings&) {
 }
 
 int run_close(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--gap"});
+  const CommandLine line(words, {"--gap"}, {kReplace});
   const double gap = line.number("--gap", 5.0, 0.0, 100.0);
   return edit_file(line, [&](const core::EditableLine& in) { return core::close(in, gap); });
 }
 
 int run_offset(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--distance"});
+  const CommandLine line(words, {"--distance", "--max-gap"}, {kReplace});
   if (!line.has("--distance")) throw UsageError("--distance is missing");
   const double distance = line.number("--distance", 0.0, -100.0, 100.0);
-  return edit_file(line, [&](const core::EditableLine& in) { return core::offset(in, distance); });
+  return edit_file(
+      line, [&](const core::EditableLine& in) { return core::offset(in, distance); }, std::abs(distance));
 }
 
 int run_reverse(const Words& words, const Remappings&) {
-  return edit_file(CommandLine(words, {}), [](const core::EditableLine& in) { return core::reverse(in); });
+  return edit_file(CommandLine(words, {}, {kReplace}),
+                   [](const core::EditableLine& in) { return core::reverse(in); });
 }
 
 int run_cut(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--from", "--to"});
+  const CommandLine line(words, {"--from", "--to"}, {kReplace});
   if (!line.has("--from") && !line.has("--to")) throw UsageError("--from or --to is missing");
   const double from = line.number("--from", 0.0, 0.0, kAnyLength);
   const double to = line.number("--to", 0.0, 0.0, kAnyLength);
@@ -70,21 +82,29 @@ int run_cut(const Words& words, const Remappings&) {
 }
 
 int run_join(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--gap"});
+  const CommandLine line(words, {"--gap"}, {kReplace});
   const double gap = line.number("--gap", 5.0, 0.0, 100.0);
   const Words& files = line.files(3, 1000, "two or more IN and one OUT");
-  expect_savable(files.back());
+  expect_savable(files.back(), Words(files.begin(), files.end() - 1));
   core::LineFile joined;
   std::vector<core::EditableLine> lines;
   for (std::size_t i = 0; i + 1 < files.size(); ++i) {
     const core::LineFile file = load_line(files[i]);
-    if (const std::string why = core::conflict(joined.header, file.header); !why.empty()) {
+    if (const std::string why = core::merge(joined.header, file.header); !why.empty()) {
       throw std::runtime_error(files[i] + ": cannot be joined to those before it: " + why);
     }
-    if (i == 0 || core::is_empty(joined.header)) joined.header = file.header;
-    lines.push_back(core::make_editable(file.line));
+    try {
+      lines.push_back(core::make_editable(file.line));
+    } catch (const std::runtime_error& fault) {
+      throw std::runtime_error(files[i] + ": " + fault.what());
+    }
   }
   joined.line = core::make_recorded(core::join(lines, gap));
+  joined.header.bridged = core::still_bridged(joined.header.bridged, joined.line, core::kBesideGap);
+  // Of many files the last one may be meant to be read.
+  if (!may_replace(line) && std::filesystem::is_regular_file(files.back())) {
+    throw UsageError("OUT, " + files.back() + ", exists: name another one, or say --replace");
+  }
   save_line(files.back(), joined);
   print_written(files.back(), joined.line);
   return 0;
@@ -101,13 +121,14 @@ char separator_of(const std::string& name) {
 
 int run_convert(const Words& words, const Remappings&) {
   const CommandLine line(words, {"--from", "--to", "--utm", "--origin", "--separator", "--topic", "--frame"},
-                         {"--lonlat"});
+                         {"--lonlat", kReplace});
   const Words& files = line.files(2, 2, "IN and OUT");
   core::WriteOptions write;
   write.separator = separator_of(line.text("--separator", "comma"));
   write.geographic = line.has("--lonlat");
   const core::GeoReference reference = reference_of(line);
-  expect_savable(files[1], line.text("--to"));
+  expect_savable(files[1], may_replace(line) ? Words() : Words{files[0]}, line.text("--to"),
+                 line.text("--topic"));
   core::LineFile file = load_line(files[0], line.text("--from"), {reference}, line.text("--topic"));
   if (reference.projection != core::Projection::kNone) {
     const std::string why = core::conflict({"", reference}, {"", file.header.reference});
@@ -139,6 +160,7 @@ Reads a line in any format and writes it in another, with nothing lost down to a
   --separator NAME             CSV with comma (the default), semicolon, tab, blank or bar
   --frame NAME                 name the map frame in the file
   --topic TOPIC                of a bag (its only nav_msgs/Path; /navigation_line)
+  --replace                    OUT may be IN
 
 CSV needs a first line with names of columns (x,y,z or lon,lat,alt), or has x,y,z.
 Examples: navigation_line convert track.gpx lane.smoothed
@@ -146,15 +168,17 @@ Examples: navigation_line convert track.gpx lane.smoothed
 )",
                           run_convert};
 
-const Command kResample = {"resample", "other distances between points",
-                           R"(Usage: navigation_line resample IN OUT (--spacing D | --by-curvature)
+const Command kResample = {
+    "resample", "other distances between points",
+    R"(Usage: navigation_line resample IN OUT (--spacing D | --by-curvature) [OPTION]...
 
   --spacing D      [m] evenly
   --by-curvature   3.0, 1.0, 0.4, 0.1 m where curvature is above 0, 0.002, 0.008, 0.02 1/m
+  --max-gap D      [m] longer gaps in IN stay faults in OUT (5)
 
 Example: navigation_line resample lane.smoothed thin.smoothed --by-curvature
 )",
-                           run_resample};
+    run_resample};
 
 const Command kClose = {"close", "make a loop of a line whose ends nearly meet",
                         R"(Usage: navigation_line close IN OUT [--gap D]
@@ -173,6 +197,7 @@ Smooth the line first: noise has curves that no parallel can follow. A parallel 
 the line comes near to itself, is refused with the place.
 
   --distance D   [m] to the left; negative: to the right
+  --max-gap D    [m] longer gaps in IN stay faults in OUT (5)
 
 Example: navigation_line offset lane.smoothed left.smoothed --distance 3.5
 )",
@@ -194,7 +219,8 @@ const Command kJoin = {"join", "one line of several", R"(Usage: navigation_line 
 
 In the order that they are driven in. Where two overlap, the first one is taken.
 
-  --gap D   [m] that may be bridged (5)
+  --gap D     [m] that may be bridged (5)
+  --replace   OUT may exist, and is replaced
 
 Example: navigation_line join to_town.smoothed through_town.smoothed whole.smoothed
 )",

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "navigation_line_command.hpp"
+#include "relative_map/tools/bridged_gaps.hpp"
 #include "relative_map/tools/line_check.hpp"
 #include "relative_map/tools/line_smoother.hpp"
 
@@ -13,8 +14,7 @@ namespace {
 using Remappings = std::map<std::string, std::string>;
 using Words = std::vector<std::string>;
 
-constexpr double kMaxBound = 10.0;   // [m]
-constexpr double kNotableGap = 5.0;  // [m]
+constexpr double kMaxBound = 10.0;  // [m]
 
 /// "would do" for what find_feasible() has found.
 std::string advice(const core::EditableLine& line, const core::SmootherParam& param) {
@@ -47,17 +47,21 @@ core::SmoothedLine smooth(const core::LineFile& file, const core::SmootherParam&
 }
 
 int run_smooth(const Words& words, const Remappings&) {
-  const CommandLine line(words, {"--bound", "--spacing", "--follow", "--max-curvature"});
+  const CommandLine line(words, {"--bound", "--spacing", "--follow", "--max-curvature", "--max-gap"},
+                         {kReplace});
   const Words& files = line.files(2, 2, "IN and OUT");
   core::SmootherParam param;
   param.bound = line.number("--bound", param.bound, 0.01, kMaxBound);
   param.spacing = line.number("--spacing", param.spacing, 0.2, 2.0);
   param.follow = line.number("--follow", param.follow, 2.0, 50.0);
   param.max_curvature = line.number("--max-curvature", param.max_curvature, 1e-3, 10.0);
-  expect_savable(files[1]);
+  const double max_gap = line.number("--max-gap", core::LineCheckParam().max_gap, 0.01, 1e4);
+  expect_savable(files[1], may_replace(line) ? Words() : Words{files[0]});
   core::LineFile file = load_line(files[0]);
+  const std::vector<core::BridgedGap> gaps = core::all_gaps(file, max_gap);
   const core::SmoothedLine result = smooth(file, param, files[0]);
   file.line = core::make_recorded(result.line);
+  file.header.bridged = core::still_bridged(gaps, file.line, core::kBesideGap);
   save_line(files[1], file);
   std::printf("%s: %zu points, %.2f m%s\n", files[1].c_str(), file.line.points.size(), result.length,
               result.line.closed() ? ", a loop" : "");
@@ -65,10 +69,10 @@ int run_smooth(const Words& words, const Remappings&) {
               result.deviation_s);
   std::printf("greatest curvature      %.5f 1/m at s = %.1f m\n", result.greatest_kappa, result.kappa_s);
   std::printf("greatest curvature rate %.5f 1/m^2 at s = %.1f m\n", result.greatest_dkappa, result.dkappa_s);
-  if (result.longest_gap > kNotableGap) {
+  if (result.longest_gap > max_gap) {
     std::printf(
         "longest gap             %.2f m from s = %.1f m on: nothing is recorded there, and the line a "
-        "guess\n",
+        "guess; a fault in `check` until --max-gap accepts it\n",
         result.longest_gap, result.gap_s);
   }
   return 0;
@@ -81,7 +85,9 @@ std::size_t check_file(const std::string& path, const core::LineFile& file,
   for (const core::LineFault& fault : faults) {
     std::printf("%s: %s at point %zu, s = %.1f m: %s", path.c_str(), fault.kind.c_str(), fault.point, fault.s,
                 fault.what.c_str());
-    if (fault.count > 1) std::printf(" (the worst of %zu)", fault.count);
+    if (fault.count > 1) {
+      std::printf(" (the worst of %zu, from s = %.1f m to %.1f m)", fault.count, fault.from, fault.to);
+    }
     std::printf("\n");
   }
   if (faults.empty()) {
@@ -101,7 +107,7 @@ int run_check(const Words& words, const Remappings&) {
   param.max_curvature = line.number("--max-curvature", param.max_curvature, 1e-3, 10.0);
   param.max_curvature_rate = line.number("--max-curvature-rate", param.max_curvature_rate, 1e-3, 100.0);
   core::LineHeader expected{line.text("--frame"), reference_of(line)};
-  std::string expected_by = "this call";
+  std::string expected_by = core::is_empty(expected) ? "" : "this call";
   std::size_t faults = 0;
   for (const std::string& path : files) {
     core::LineFile file;
@@ -112,17 +118,15 @@ int run_check(const Words& words, const Remappings&) {
       ++faults;
       continue;
     }
-    if (const std::string why = core::conflict(expected, file.header); !why.empty()) {
+    if (const std::string why = core::merge(expected, file.header); !why.empty()) {
       std::printf("%s: zone: it does not fit to %s: %s\n", path.c_str(), expected_by.c_str(), why.c_str());
       ++faults;
-    } else if (core::is_empty(expected)) {
-      expected = file.header;
+    } else if (expected_by.empty()) {
       expected_by = path;
     }
-    core::LineFile read_by = file;
-    if (read_by.header.reference.projection == core::Projection::kNone)
-      read_by.header.reference = expected.reference;
-    faults += check_file(path, read_by, param);
+    if (file.header.reference.projection == core::Projection::kNone)
+      file.header.reference = expected.reference;
+    faults += check_file(path, file, param);
   }
   if (faults > 0) std::printf("%zu fault%s\n", faults, faults == 1 ? "" : "s");
   return faults == 0 ? 0 : 1;
@@ -142,6 +146,7 @@ theta, kappa, dkappa and s are those of the result. If the bound cannot be held 
   --follow L          [m] bends much longer than this stay where they were recorded (30); with a wide bound for
                       a noisy recording, 5 keeps curves from being cut
   --max-curvature K   [1/m] that the vehicle can drive (0.25)
+  --max-gap D         [m] a longer gap is bridged, too, but stays a fault in `check`: look at it first (5)
 
 Example: navigation_line smooth raw.smoothed lane.smoothed
          navigation_line smooth gps.smoothed lane.smoothed --bound 1.0 --follow 5
@@ -156,7 +161,7 @@ vehicle's limit, curvature that changes faster than the vehicle can steer (at up
 the seam of a loop, a line beside itself, coordinates that can't be of their zone, files that don't fit to each other.
 Exit code 0: none; 1: some.
 
-  --max-gap D              [m] between points (5)
+  --max-gap D              [m] between points, also where they were put across a gap later (5)
   --max-curvature K        [1/m] that the vehicle can drive (0.25)
   --max-curvature-rate R   [1/(m s)] that its steering can change that by (0.3)
   --utm ZONE, --origin LAT,LON[,ALT], --frame NAME   what the files should be in

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "navigation_line_command.hpp"
+#include "orderly_end.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
 #include "relative_map/tools/line_edit.hpp"
 
@@ -39,11 +40,9 @@ int run_publish(const Words& words, const Remappings& remappings) {
   core::NavigationInfo info;
   for (std::size_t i = 0; i < files.size(); ++i) {
     core::LineFile file = load_line(files[i]);
-    if (const std::string why = core::conflict(header, file.header); !why.empty()) {
+    if (const std::string why = core::merge(header, file.header); !why.empty()) {
       throw std::runtime_error(files[i] + ": does not fit to the others: " + why);
     }
-    if (header.frame_id.empty()) header.frame_id = file.header.frame_id;
-    if (header.reference.projection == core::Projection::kNone) header.reference = file.header.reference;
     if (line.has("--by-curvature") || spacing > 0.0) {
       const core::EditableLine in = core::make_editable(file.line);
       file.line = core::make_recorded(
@@ -57,6 +56,7 @@ int run_publish(const Words& words, const Remappings& remappings) {
   info.frame_id = header.frame_id.empty() ? "map" : header.frame_id;
 
   ros::init(remappings, "navigator");
+  end_in_order();
   ros::NodeHandle nh;
   ros::Publisher publisher = nh.advertise<NavigationInfo>("navigation", 1, true);
   NavigationInfo message = to_message(info);

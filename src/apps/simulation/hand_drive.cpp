@@ -5,13 +5,14 @@
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "navigation_line_command.hpp"
 #include "relative_map/io/geodetic_projection.hpp"
+#include "relative_map/io/whole_file.hpp"
 #include "relative_map/simulation/vehicle_simulation.hpp"
 #include "whole_bag.hpp"
 
@@ -46,6 +47,7 @@ constexpr double kBiasTime = 60.0;    // [s]
 constexpr double kBagStart = 1.7e9;   // [s] fixed: the same call writes the same bag
 constexpr double kMaxTime = 36000.0;  // [s] of driving
 constexpr double kSeedLimit = 2e9;
+const std::set<std::string> kTopics = {"/fix"};
 
 struct HandDrive {
   core::VehicleSimulationConfig config;
@@ -108,7 +110,7 @@ sensor_msgs::NavSatFix to_fix(const core::GeoPoint& place, const HandDrive& driv
 }
 
 void write_fixes(const std::string& path, const std::vector<core::GeoPoint>& places, const HandDrive& drive) {
-  WholeBag bag(path);
+  WholeBag bag(path, kTopics);
   for (std::size_t i = 0; i < places.size(); ++i) {
     sensor_msgs::NavSatFix fix = to_fix(places[i], drive);
     fix.header.stamp = ros::Time(kBagStart) + ros::Duration(kPeriod * static_cast<double>(i));
@@ -117,12 +119,13 @@ void write_fixes(const std::string& path, const std::vector<core::GeoPoint>& pla
   bag.close();
 }
 
-void run(const std::vector<std::string>& words) {
+int run(const std::vector<std::string>& words) {
   const CommandLine line(words, {"--utm", "--origin", "--start", "--beyond", "--standing", "--speed",
                                  "--sway", "--noise", "--bias", "--seed"});
   const std::vector<std::string>& files = line.files(2, 2, "LINE and OUT.bag");
   const HandDrive drive = parse(line);
-  expect_bag_writable(files[1]);
+  core::expect_not_among(files[1], {files[0]});
+  expect_bag_writable(files[1], kTopics);
   std::vector<core::LinePoint> places;
   std::vector<core::GeoPoint> fixes;
   try {
@@ -135,25 +138,12 @@ void run(const std::vector<std::string>& words) {
   std::printf("%s: %zu fixes in %.1f s, the first at latitude %.7f, longitude %.7f\n", files[1].c_str(),
               fixes.size(), kPeriod * static_cast<double>(fixes.size()), fixes[0].latitude,
               fixes[0].longitude);
+  return 0;
 }
 
 }  // namespace
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
-    std::cout << relative_map::kUsage;
-    return 0;
-  }
-  try {
-    relative_map::run(words);
-  } catch (const relative_map::UsageError& fault) {
-    std::cerr << "hand_drive: " << fault.what() << "; see hand_drive --help\n";
-    return 2;
-  } catch (const std::exception& fault) {
-    std::cerr << "hand_drive: " << fault.what() << '\n';
-    return 1;
-  }
-  return 0;
+  return relative_map::run_tool("hand_drive", relative_map::kUsage, argc, argv, relative_map::run);
 }

@@ -1,16 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "command_line.hpp"
 #include "relative_map/io/navigation_line_file.hpp"
 #include "relative_map/simulation/road_description.hpp"
 
@@ -39,7 +37,6 @@ Exit codes: 0 written, 1 writing failed, 2 bad arguments.
 )";
 
 struct Options {
-  bool help = false;
   std::string out;
   std::size_t lanes = 3;
   double lane_width = 3.5;  ///< [m]
@@ -48,65 +45,24 @@ struct Options {
   Pose2 origin;
 };
 
-/// Walks through the arguments; throws std::invalid_argument with a sentence.
-class Arguments {
- public:
-  Arguments(int argc, char** argv) : arguments_(argv + 1, argv + argc) {}
-
-  bool at_end() const { return next_ == arguments_.size(); }
-  const std::string& take_name() { return arguments_[next_++]; }
-  const std::string& take_value(const std::string& option) {
-    if (at_end()) throw std::invalid_argument(option + " lacks a value");
-    return arguments_[next_++];
-  }
-  double take_number(const std::string& option, double low, double high) {
-    const std::string& text = take_value(option);
-    char* end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0') {
-      throw std::invalid_argument(option + " must be a number, not '" + text + "'");
-    }
-    if (!(number >= low && number <= high)) {
-      std::ostringstream fault;
-      fault << option << " is " << text << ", but must lie in [" << low << ", " << high << "]";
-      throw std::invalid_argument(fault.str());
-    }
-    return number;
-  }
-
- private:
-  std::vector<std::string> arguments_;
-  std::size_t next_ = 0;
-};
-
-Options parse_options(Arguments arguments) {
+Options parse(const std::vector<std::string>& words) {
+  const CommandLine line(words, {"--out", "--lanes", "--lane-width", "--spacing", "--road"}, {},
+                         {"--origin"});
+  line.files(0, 0, "");
   Options options;
-  while (!arguments.at_end()) {
-    const std::string name = arguments.take_name();
-    if (name == "--help" || name == "-h") {
-      options.help = true;
-      return options;
-    } else if (name == "--out") {
-      options.out = arguments.take_value(name);
-    } else if (name == "--lanes") {
-      const double lanes = arguments.take_number(name, 1.0, 20.0);
-      if (lanes != std::floor(lanes)) throw std::invalid_argument("--lanes must be a whole number");
-      options.lanes = static_cast<std::size_t>(lanes);
-    } else if (name == "--lane-width") {
-      options.lane_width = arguments.take_number(name, 0.5, 20.0);
-    } else if (name == "--spacing") {
-      options.spacing = arguments.take_number(name, 0.01, 100.0);
-    } else if (name == "--road") {
-      options.road = arguments.take_value(name);
-    } else if (name == "--origin") {
-      const double x = arguments.take_number(name, -1e8, 1e8);
-      const double y = arguments.take_number(name, -1e8, 1e8);
-      options.origin = Pose2(Point2(x, y), arguments.take_number(name, -2.0 * kPi, 2.0 * kPi));
-    } else {
-      throw std::invalid_argument("unknown argument '" + name + "'");
-    }
+  options.out = line.text("--out");
+  if (options.out.empty()) throw UsageError("--out DIR is missing");
+  const double lanes = line.number("--lanes", 3.0, 1.0, 20.0);
+  if (lanes != std::floor(lanes)) throw UsageError("--lanes must be a whole number");
+  options.lanes = static_cast<std::size_t>(lanes);
+  options.lane_width = line.number("--lane-width", options.lane_width, 0.5, 20.0);
+  options.spacing = line.number("--spacing", options.spacing, 0.01, 100.0);
+  options.road = line.text("--road", options.road);
+  if (line.has("--origin")) {
+    const std::vector<double> origin = line.numbers("--origin", 3, -1e8, 1e8);
+    if (std::abs(origin[2]) > 2.0 * kPi) throw UsageError("--origin's heading must lie in [-2 pi, 2 pi]");
+    options.origin = Pose2(Point2(origin[0], origin[1]), origin[2]);
   }
-  if (options.out.empty()) throw std::invalid_argument("--out DIR is missing");
   return options;
 }
 
@@ -114,7 +70,9 @@ std::vector<RecordedLine> make_lanes(const Options& options) {
   try {
     return parse_road(options.road, options.origin).lanes(options.lanes, options.lane_width, options.spacing);
   } catch (const std::out_of_range&) {
-    throw std::invalid_argument("the road's curves are too sharp for so many lanes of that width");
+    throw UsageError("the road's curves are too sharp for so many lanes of that width");
+  } catch (const std::invalid_argument& fault) {
+    throw UsageError(fault.what());
   }
 }
 
@@ -128,12 +86,8 @@ void write_lane(const std::filesystem::path& folder, const RecordedLine& lane) {
             << " 1/m\n";
 }
 
-int run(int argc, char** argv) {
-  const Options options = parse_options(Arguments(argc, argv));
-  if (options.help) {
-    std::cout << kHelp;
-    return 0;
-  }
+int run(const std::vector<std::string>& words) {
+  const Options options = parse(words);
   const std::vector<RecordedLine> lanes = make_lanes(options);
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
@@ -146,13 +100,6 @@ int run(int argc, char** argv) {
 }  // namespace relative_map::core
 
 int main(int argc, char** argv) {
-  try {
-    return relative_map::core::run(argc, argv);
-  } catch (const std::invalid_argument& fault) {
-    std::cerr << "make_road: " << fault.what() << "; see make_road --help\n";
-    return 2;
-  } catch (const std::exception& fault) {
-    std::cerr << "make_road: " << fault.what() << '\n';
-    return 1;
-  }
+  using namespace relative_map;
+  return run_tool("make_road", core::kHelp, argc, argv, core::run);
 }

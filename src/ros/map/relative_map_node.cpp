@@ -181,6 +181,7 @@ void RelativeMapNode::on_navigation(const NavigationInfoConstPtr& message) {
 }
 
 void RelativeMapNode::load_lines_of_parameter() {
+  private_nh_.getParam(kLineFolderParameter, line_folder_);
   XmlRpc::XmlRpcValue value;
   if (!private_nh_.getParam(kLinesParameter, value)) return;
   const std::vector<std::string> files = line_files(value);
@@ -203,6 +204,7 @@ bool RelativeMapNode::on_load(LoadNavigationLines::Request& request,
       const std::lock_guard<std::mutex> lock(intake_mutex_);
       localization_frame = frame_name(localization_frame_);
     }
+    expect_allowed(request.files, line_folder_);
     const core::NavigationInfo info =
         load_lines(request.files, request.frame_id.empty() ? localization_frame : request.frame_id);
     expect_frame(info.frame_id, localization_frame);

@@ -3,11 +3,14 @@
 #include <XmlRpcValue.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
 
 #include "relative_map/io/line_formats.hpp"
+#include "relative_map/io/text.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
 #include "relative_map/ros/setup/parameters.hpp"
 
@@ -34,7 +37,7 @@ std::vector<std::string> line_files(const XmlRpc::XmlRpcValue& parameter) {
 std::vector<std::string> line_files(const std::string& yaml_file) {
   std::vector<std::string> files;
   try {
-    const YAML::Node tree = YAML::LoadFile(yaml_file);
+    const YAML::Node tree = YAML::Load(core::read_text(yaml_file));
     const YAML::Node value = tree.IsMap() ? tree[kLinesParameter] : YAML::Node();
     if (!value || value.IsNull()) return files;
     if (value.IsScalar()) return {value.Scalar()};
@@ -50,6 +53,25 @@ std::vector<std::string> line_files(const std::string& yaml_file) {
   return files;
 }
 
+void expect_allowed(const std::vector<std::string>& files, const std::string& root) {
+  namespace fs = std::filesystem;
+  for (const std::string& file : files) {
+    const fs::path path(file);
+    if (!path.is_absolute()) {
+      throw std::runtime_error("'" + file + "' must be an absolute path: the node has a folder of its own");
+    }
+    if (root.empty()) continue;
+    // Links and ".." are followed first: they must not lead out. Nothing is said of what lies elsewhere.
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(root, error), place = fs::weakly_canonical(path, error);
+    const auto [end, unused] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
+    if (error || end != folder.end()) {
+      throw std::runtime_error("'" + file + "' does not lie in " + root + ", where lines are loaded from (~" +
+                               kLineFolderParameter + ")");
+    }
+  }
+}
+
 core::NavigationInfo load_lines(const std::vector<std::string>& files, const std::string& frame_id) {
   if (files.empty()) throw std::runtime_error("no files are named");
   core::LineHeader header;
@@ -57,11 +79,9 @@ core::NavigationInfo load_lines(const std::vector<std::string>& files, const std
   for (const std::string& path : files) {
     const core::LineFormat format = core::format_of(path).value_or(core::LineFormat::kSmoothed);
     core::LineFile file = core::read_line(path, format);
-    if (const std::string why = core::conflict(header, file.header); !why.empty()) {
+    if (const std::string why = core::merge(header, file.header); !why.empty()) {
       throw std::runtime_error(path + ": does not fit to the files before it: " + why);
     }
-    if (header.frame_id.empty()) header.frame_id = file.header.frame_id;
-    if (header.reference.projection == core::Projection::kNone) header.reference = file.header.reference;
     file.line.priority = static_cast<std::uint32_t>(info.lines.size());
     info.lines.push_back(std::move(file.line));
   }

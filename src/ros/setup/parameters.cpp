@@ -8,17 +8,22 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "relative_map/io/text.hpp"
 #include "relative_map/ros/setup/footprint.hpp"
 
 namespace relative_map {
 
 namespace {
 
+bool is_of_lines(const std::string& key) {
+  return key == kLinesParameter || key == kLineFolderParameter;
+}
+
 void flatten_into(ParameterSet& set, const std::string& path, XmlRpc::XmlRpcValue value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeStruct:
       for (auto& [key, child] : value) {
-        if (path.empty() && (key == kReconfigureNamespace || key == kLinesParameter)) continue;
+        if (path.empty() && (key == kReconfigureNamespace || is_of_lines(key))) continue;
         flatten_into(set, path.empty() ? key : path + "/" + key, child);
       }
       break;
@@ -54,7 +59,7 @@ void flatten_into(ParameterSet& set, const std::string& path, const YAML::Node& 
   if (node.IsMap()) {
     for (const auto& entry : node) {
       const std::string key = entry.first.as<std::string>();
-      if (path.empty() && key == kLinesParameter) continue;
+      if (path.empty() && is_of_lines(key)) continue;
       flatten_into(set, path.empty() ? key : path + "/" + key, entry.second);
     }
   } else if (node.IsScalar()) {
@@ -196,14 +201,12 @@ ParameterSet flatten(const XmlRpc::XmlRpcValue& tree) {
 ParameterSet read_yaml(const std::string& file) {
   ParameterSet set;
   try {
-    const YAML::Node tree = YAML::LoadFile(file);
+    const YAML::Node tree = YAML::Load(core::read_text(file));
     if (tree.IsMap()) {
       flatten_into(set, "", tree);
     } else if (tree.IsDefined() && !tree.IsNull()) {
       throw std::runtime_error(file + ": is no map of parameters");
     }
-  } catch (const YAML::BadFile&) {
-    throw std::runtime_error(file + ": cannot be opened");
   } catch (const YAML::Exception& fault) {
     throw std::runtime_error(file + ": " + fault.what());
   }

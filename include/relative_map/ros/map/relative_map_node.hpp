@@ -62,6 +62,7 @@ class RelativeMapNode {
 
   std::mutex intake_mutex_;  ///< guards the next three
   std::string localization_frame_;
+  std::string line_folder_;  ///< that the service may load from; empty: any
   std::shared_ptr<const core::NavigationLines> new_lines_;
   core::PipelineConfig intake_config_;
   std::array<std::shared_ptr<const core::NavigationLines>, 2> kept_lines_;  ///< of the intake's thread

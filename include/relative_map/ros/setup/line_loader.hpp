@@ -20,6 +20,10 @@ std::vector<std::string> line_files(const XmlRpc::XmlRpcValue& parameter);
 /// The same from a YAML file of parameters; none if it does not name any.
 std::vector<std::string> line_files(const std::string& yaml_file);
 
+/// That these are absolute paths, and lie in the folder `root` (empty: anywhere) when all links are followed:
+/// what a service is asked for by anybody must not tell of other files.
+void expect_allowed(const std::vector<std::string>& files, const std::string& root);
+
 /// Reads files of any format (as .smoothed where the extension does not tell), with priorities in their
 /// order. They must be of one frame and projection, as far as they say; without a frame in any of them it is
 /// `frame_id`, or "map" if that is empty.

@@ -27,8 +27,8 @@ struct NodeConfig {
   OrientationConvention orientation_convention = OrientationConvention::kFlu;
 };
 
-/// Parameters as the parameter server has them; the namespace of dynamic_reconfigure and the list of files
-/// are left out. What is no scalar is kept as its text, for `make_node_config` to name.
+/// Parameters as the parameter server has them; the namespace of dynamic_reconfigure, the list of files
+/// and their folder are left out. What is no scalar is kept as its text, for `make_node_config` to name.
 ParameterSet flatten(const XmlRpc::XmlRpcValue& tree);
 /// Reads a YAML file; throws std::runtime_error naming file and fault.
 ParameterSet read_yaml(const std::string& file);
@@ -41,5 +41,7 @@ NodeConfig make_node_config(const ParameterSet& parameters, const std::string& u
 constexpr const char* kReconfigureNamespace = "reconfigure";
 /// A list of files, which is the node's business and no part of its configuration: see line_loader.hpp.
 constexpr const char* kLinesParameter = "navigation_lines";
+/// The folder that the service may load lines from, likewise; empty: any.
+constexpr const char* kLineFolderParameter = "navigation_lines_folder";
 
 }  // namespace relative_map
