@@ -13,8 +13,8 @@ export ROS_LOG_DIR=$build_root/log/ros
 unset ROS_HOSTNAME               # would win over ROS_IP
 
 if [[ -f /opt/ros/noetic/setup.bash ]]; then
-  build_packages=(g++ make cmake pkg-config libboost-dev libboost-program-options-dev libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev
-    libgeographic-dev libtinyxml2-dev
+  build_packages=(g++ make cmake pkg-config libboost-dev libboost-program-options-dev libeigen3-dev libyaml-cpp-dev
+    nlohmann-json3-dev libgeographic-dev libtinyxml2-dev
     ros-noetic-{catkin,diagnostic-msgs,diagnostic-updater,dynamic-reconfigure,geometry-msgs,message-generation}
     ros-noetic-{message-runtime,nav-msgs,nodelet,pluginlib,rosbag-storage,roscpp,sensor-msgs,std-msgs,std-srvs,tf2}
     ros-noetic-{tf2-msgs,tf2-ros,topic-tools,urdf,visualization-msgs,robot-state-publisher,rosbash,roslaunch,rosnode}
@@ -24,8 +24,8 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
   test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} python3-matplotlib clang-format
     catkin-lint)
 else
-  build_packages=(g++ make cmake pkg-config catkin libboost-dev libboost-program-options-dev libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev
-    libgeographiclib-dev libtinyxml2-dev
+  build_packages=(g++ make cmake pkg-config catkin libboost-dev libboost-program-options-dev libeigen3-dev libyaml-cpp-dev
+    nlohmann-json3-dev libgeographiclib-dev libtinyxml2-dev
     libdiagnostic-msgs-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev
     python3-dynamic-reconfigure libgeometry-msgs-dev ros-geometry-msgs ros-message-generation ros-message-runtime
     libnav-msgs-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev librosbag-storage-dev libroscpp-dev

@@ -1,5 +1,6 @@
 """Reads a drive out of a bag of maps, for plot_maps: numbers of every map, and the lanes along the way."""
 import math
+import os
 import sys
 
 import numpy
@@ -160,6 +161,8 @@ class Reader:
 
 
 def open_bag(path):
+    if os.path.exists(path) and not os.path.isdir(path) and not os.path.isfile(path):
+        raise Fault("%s: is a pipe or a device, and no file" % path)  # opening one could wait for ever
     try:
         return rosbag.Bag(path)
     except rosbag.ROSBagUnindexedException:

@@ -78,6 +78,13 @@ void write_device(const std::string& path, const std::string& content) {
   if (error != 0) fail(path, error);
 }
 
+/// So that power loss does not take the new name back.
+void sync_folder(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  const OpenFile file(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
+  if (file.opened() == 0) file.sync();  // not every file system can; the file itself is there
+}
+
 int write_synced(const std::string& path, const std::string& content) {
   OpenFile file(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   int error = file.opened();
@@ -125,6 +132,7 @@ void move_into_place(const std::string& temporary, const std::string& path) {
       if (error != 0) fail(path, error);
     }
     if (std::rename(temporary.c_str(), followed(path).c_str()) != 0) fail(path, errno);
+    sync_folder(followed(path));
   } catch (const std::runtime_error&) {
     unlink(temporary.c_str());
     throw;

@@ -92,6 +92,15 @@ class LoadLines(NodeTest):
         self.assertLess(time.monotonic() - start, 10.0)  # for ever, and all of the memory, before
         self.assertTrue(self.load([good]).success)
 
+    def test_what_was_left_out_of_a_file_is_told(self):
+        path = os.path.join(self.folder, 'line.csv')
+        with open(path, 'w') as file:
+            file.write('time,x,y\n' + ''.join('0,%d,0\n' % x for x in range(1500)))
+        self.start()
+        answer = self.load([path])
+        self.assertTrue(answer.success, answer.message)
+        self.assertIn('line.csv: these columns are left out: time', answer.message)
+
     def test_the_service_keeps_to_its_folder(self):
         inside = os.path.join(self.folder, 'lines')
         os.mkdir(inside)

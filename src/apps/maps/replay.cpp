@@ -164,7 +164,9 @@ std::shared_ptr<const core::NavigationLines> configured_lines(const std::string&
   const std::vector<std::string> files =
       config_file.empty() ? std::vector<std::string>() : line_files(config_file);
   if (files.empty()) return nullptr;
-  const auto lines = MapEngine::prepare(to_message(load_lines(files, "")), config.pipeline);
+  std::vector<std::string> notes;
+  const auto lines = MapEngine::prepare(to_message(load_lines(files, "", notes)), config.pipeline);
+  for (const std::string& note : notes) std::cerr << note << "\n";
   expect_all_loaded(*lines, files.size());
   return lines;
 }

@@ -186,7 +186,9 @@ void RelativeMapNode::load_lines_of_parameter() {
   if (!private_nh_.getParam(kLinesParameter, value)) return;
   const std::vector<std::string> files = line_files(value);
   if (files.empty()) return;
-  const auto lines = prepare(to_message(load_lines(files, "")));
+  std::vector<std::string> notes;
+  const auto lines = prepare(to_message(load_lines(files, "", notes)));
+  for (const std::string& note : notes) ROS_WARN_STREAM(kLinesParameter << ": " << note);
   expect_all_loaded(*lines, files.size());
   take_lines(lines);
 }
@@ -205,14 +207,19 @@ bool RelativeMapNode::on_load(LoadNavigationLines::Request& request,
       localization_frame = frame_name(localization_frame_);
     }
     expect_allowed(request.files, line_folder_);
+    std::vector<std::string> notes;
     const core::NavigationInfo info =
-        load_lines(request.files, request.frame_id.empty() ? localization_frame : request.frame_id);
+        load_lines(request.files, request.frame_id.empty() ? localization_frame : request.frame_id, notes);
     expect_frame(info.frame_id, localization_frame);
     const auto lines = prepare(to_message(info));
     expect_all_loaded(*lines, request.files.size());
     response.lines = described(*lines);
     response.message =
         std::to_string(lines->lines.size()) + " lines loaded in frame '" + lines->frame_id + "'";
+    for (const std::string& note : notes) {
+      response.message += "; " + note;
+      ROS_WARN_STREAM("load_navigation_lines: " << note);
+    }
     response.success = true;
     take_lines(lines);
   } catch (const std::exception& fault) {

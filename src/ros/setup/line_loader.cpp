@@ -72,7 +72,8 @@ void expect_allowed(const std::vector<std::string>& files, const std::string& ro
   }
 }
 
-core::NavigationInfo load_lines(const std::vector<std::string>& files, const std::string& frame_id) {
+core::NavigationInfo load_lines(const std::vector<std::string>& files, const std::string& frame_id,
+                                std::vector<std::string>& notes) {
   if (files.empty()) throw std::runtime_error("no files are named");
   core::LineHeader header;
   core::NavigationInfo info;
@@ -81,6 +82,13 @@ core::NavigationInfo load_lines(const std::vector<std::string>& files, const std
     core::LineFile file = core::read_line(path, format);
     if (const std::string why = core::merge(header, file.header); !why.empty()) {
       throw std::runtime_error(path + ": does not fit to the files before it: " + why);
+    }
+    for (const std::string& note : file.notes) notes.push_back(path + ": " + note);
+    for (const core::BridgedGap& gap : file.header.bridged) {
+      std::ostringstream note;
+      note << std::fixed << std::setprecision(1) << path << ": from (" << gap.from_x << ", " << gap.from_y
+           << ") to (" << gap.to_x << ", " << gap.to_y << ") nothing was recorded, and the line is a guess";
+      notes.push_back(note.str());
     }
     file.line.priority = static_cast<std::uint32_t>(info.lines.size());
     info.lines.push_back(std::move(file.line));

@@ -27,7 +27,9 @@ void expect_allowed(const std::vector<std::string>& files, const std::string& ro
 /// Reads files of any format (as .smoothed where the extension does not tell), with priorities in their
 /// order. They must be of one frame and projection, as far as they say; without a frame in any of them it is
 /// `frame_id`, or "map" if that is empty.
-core::NavigationInfo load_lines(const std::vector<std::string>& files, const std::string& frame_id);
+/// What the readers left out or found odd goes to `notes`, a sentence with the file each.
+core::NavigationInfo load_lines(const std::vector<std::string>& files, const std::string& frame_id,
+                                std::vector<std::string>& notes);
 
 /// That lines in `frame` are of use: `localization_frame` is the same, or not known yet (empty).
 void expect_frame(const std::string& frame, const std::string& localization_frame);
