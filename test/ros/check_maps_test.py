@@ -67,9 +67,9 @@ class CheckMaps(ReplayTest):
         self.expect(2, 'std_msgs/String')
         self.record('out.bag', [('/relative_map', MapMsg(), START)])
         self.expect(1, "frame_id is ''", 'there is no lane, but the status is OK')
-        self.expect(2, 'a bag is needed', words=())
+        self.expect(2, 'a bag must be named', words=())
         self.expect(2, '--frame needs a value', words=('out.bag', '--frame'))
-        self.expect(2, "unexpected argument '--all'", words=('out.bag', '--all'))
+        self.expect(2, 'unknown option --all', words=('out.bag', '--all'))
 
 
 if __name__ == '__main__':
