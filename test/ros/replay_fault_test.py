@@ -204,9 +204,9 @@ class ReplayFaults(ReplayTest):
     def test_a_bad_urdf(self):
         self.record()
         words = ('in.bag', 'out.bag', '--urdf', 'car.urdf')
-        self.expect_fault('car.urdf', "can't be read", words=words)
+        self.expect_fault('car.urdf: cannot be opened', words=words)
         self.write('car.urdf', '')
-        self.expect_fault('car.urdf', words=words)
+        self.expect_fault('car.urdf: is empty', words=words)
         self.write('car.urdf', '<robot name="car"><link name="wheel"/></robot>')
         self.expect_fault("no link 'base_link'", words=words, lines=2)
 

@@ -65,6 +65,12 @@ Arguments parse(const std::vector<std::string>& words) {
   return arguments;
 }
 
+std::string read_urdf(const std::string& path) {
+  const std::string text = core::read_text(path);
+  if (core::trimmed(text).empty()) throw std::runtime_error(path + ": is empty");
+  return text;
+}
+
 class Replay {
  public:
   Replay(const NodeConfig& config, const rosbag::Bag& input, WholeBag& output)
@@ -174,7 +180,7 @@ std::shared_ptr<const core::NavigationLines> configured_lines(const std::string&
 int run(const std::vector<std::string>& words) {
   const Arguments arguments = parse(words);
   const ParameterSet parameters = arguments.config.empty() ? ParameterSet() : read_yaml(arguments.config);
-  const std::string urdf = arguments.urdf.empty() ? "" : core::read_text(arguments.urdf);
+  const std::string urdf = arguments.urdf.empty() ? "" : read_urdf(arguments.urdf);
   const NodeConfig config = make_node_config(parameters, urdf);
   const auto lines = configured_lines(arguments.config, config);
 
