@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "relative_map/model/sensor_noise.hpp"
+
 namespace relative_map::core {
 
 enum class LaneSource { kOfflineGenerated, kPerception };
@@ -36,7 +38,8 @@ struct LaneFusionParam {
   // Of the estimator.
   double max_offset = 30.0;  ///< [m] that the lane may be from where localization puts it
   double decay_time = 30.0;  ///< [s] in which the offset decays to 1/e when no lane markers come
-  double hold_time = 4.0;    ///< [s] that a lane from markers alone goes on without them
+  double hold_time = 10.0;   ///< [s] that a lane from markers alone goes on without them
+  SensorNoise noise;
   // Of fixed_weight.
   double fade_length = 50.0;  ///< [m] past view_range the correction fades out over this length
 };

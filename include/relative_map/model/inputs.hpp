@@ -49,6 +49,7 @@ struct LaneMarker {
   BoundaryType type = BoundaryType::kUnknown;
   double quality = 0.0;          ///< [0, 1]; 0: not seen
   Cubic cubic;                   ///< left positive
+  int degree = 3;                ///< of the polynomial that was fitted: 1 to 3
   double longitude_start = 0.0;  ///< [m] trusted from this x
   double view_range = 0.0;       ///< [m] trusted up to this x
 };

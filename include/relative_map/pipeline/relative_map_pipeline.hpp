@@ -20,7 +20,8 @@ namespace relative_map::core {
 class RelativeMapPipeline {
  public:
   /// `config` must be valid (PipelineConfig::validate).
-  explicit RelativeMapPipeline(std::shared_ptr<const PipelineConfig> config) : config_(std::move(config)) {}
+  explicit RelativeMapPipeline(std::shared_ptr<const PipelineConfig> config)
+      : config_(std::move(config)), estimated_(config_->lane_fusion.noise) {}
 
   void set_config(std::shared_ptr<const PipelineConfig> config) { config_ = std::move(config); }
   void set_navigation_lines(std::shared_ptr<const NavigationLines> lines) {

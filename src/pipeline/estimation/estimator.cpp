@@ -12,7 +12,11 @@ LaneEstimate Estimator::update(const std::vector<ImageQueue::Image>& images, con
   const PipelineConfig& config = tick.config;
   lane_.expect_half_width(expected_half_width(lines.lines, current, config.navigation_lane,
                                               config.map_param.default_half_width()));
-  lane_.follow_line(*current.line, current.projection);
+  std::vector<double> others;  // how far to the left of the current line
+  for (const TrackedLine& line : lines.lines) {
+    if (line.line != current.line) others.push_back(current.projection.l - line.projection.l);
+  }
+  lane_.follow_line(*current.line, current.projection, others);
   LaneEstimate estimate;
   for (const ImageQueue::Image& image : images) {  // remarks on the newest one
     estimate.remarks = lane_.see(image.sides, *current.line, current.projection, image.stamp);

@@ -2,247 +2,343 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
-
-#include "relative_map/pipeline/estimation/half_width_model.hpp"
 
 namespace relative_map::core {
 
 namespace {
 
-// Standard deviations at the start.
-constexpr double kBias0 = 0.6;          // [m]
-constexpr double kHeadingBias0 = 0.01;  // [rad]
-constexpr double kTurnBias0 = 0.003;    // [rad/s]
-constexpr double kCameraYaw0 = 0.005;   // [rad]
-// Of localization, white from message to message.
-constexpr double kPositionNoise = 0.03;   // [m] at least
-constexpr double kHeadingNoise = 0.0035;  // [rad] at least
-// Random walks, by the root of the time [s].
-constexpr double kBiasWalk = 0.15;           // [m]
-constexpr double kHeadingBiasWalk = 0.0015;  // [rad]
-constexpr double kHeadingWalk = 0.002;       // [rad] of odometry
-constexpr double kSlipWalk = 0.02;           // [m] of odometry, sideways
-constexpr double kSpeedWalk = 0.05;          // [m] of odometry, along
-constexpr double kTurnBiasWalk = 5e-5;       // [rad/s]
-constexpr double kCameraYawWalk = 1e-4;      // [rad]
-constexpr double kSpeedScale = 0.01;         // [-] of the speed, besides
+constexpr double kLongestGap = 2.0;    // [s] between poses that odometry bridges
+constexpr double kForgetTime = 60.0;   // [s] without paint until nothing is left worth having
+constexpr double kClear = 0.8;         // [-] of the belief in one lane: it is that one
+constexpr double kUnclear = 0.6;       // [-] ... and no more
+constexpr double kShift = 0.7;         // [m] at least, by which the lane is another than thought
+constexpr double kGate = 30.0;         // squared, in standard deviations: not this lane's paint
+constexpr double kOffsetGate = 3.5;    // standard deviations of a marker's mean offset
+constexpr double kAgreeBoth = 0.2;     // [s] of paint on both sides until the first is believed
+constexpr double kAgreeOne = 0.7;      // [s] ... on one side: outliers last
+constexpr double kLongestImage = 0.2;  // [s] that one image can count for
+constexpr double kMedian = 3.36;       // of the squared distance of four numbers (chi-squared)
+constexpr double kScaleStep = 0.03;    // [-] of the camera's variance, from image to image
+constexpr double kLeastScale = 0.5, kMostScale = 30.0;
+constexpr double kSwayWay = 150.0;                    // [m] over which the sway is measured
+constexpr double kLeastSway = 0.05, kMostSway = 0.5;  // [m]
+constexpr double kShapeReach = 30.0;  // [m] ahead, where a change of the line's direction is looked for
+// [rad] of the line's direction at the vehicle and there: paint can't have stayed the same beside it.
+const Eigen::Vector2d kShapeChange(0.03, 0.05);
 
-constexpr double kJumpDistance = 40.0;   // squared, in standard deviations: localization has jumped
-constexpr double kRecording = 0.4;       // [m] of one line against another
-constexpr double kOtherWidth = 0.1;      // [m] of one lane against another
-constexpr double kMaxHeadingBias = 0.1;  // [rad] of localization: no estimate beyond it is one
-constexpr double kLongestGap = 1.0;      // [s] between poses that odometry bridges
-constexpr double kListenTime = 1.0;      // [s] over which localization's noise is measured
-constexpr double kLoudest = 1.0;         // [m] of it: more is a jump
-constexpr double kHoldTime = 1.0;        // [s] without paint until the estimate starts to decay
-constexpr double kForgetTime = 60.0;     // [s] without paint until nothing is left worth having
-constexpr double kBehind = 1.5;          // knots behind the vehicle
+Point2 normal_of(double heading) {
+  return {-std::sin(heading), std::cos(heading)};
+}
 
-using Vector3 = Eigen::Vector3d;
+double sign_of(LaneFilter::Side side) {
+  return side == LaneFilter::Side::kLeft ? 1.0 : -1.0;
+}
+
+std::string refusal(const char* name, double offset) {
+  std::ostringstream reason;
+  reason.precision(2);
+  reason << name << " is ignored: it is " << offset << " m aside of where this lane's paint is expected";
+  return reason.str();
+}
 
 }  // namespace
 
 void LaneEstimator::start(const VehicleState& localized) {
-  *this = [&] {
-    LaneEstimator fresh;
-    fresh.half_width_ = half_width_;
-    fresh.given_up_ = given_up_;
-    fresh.watch_ = watch_;
-    fresh.position_variance_ = position_variance_;
-    fresh.heading_variance_ = heading_variance_;
-    return fresh;
-  }();
-  origin_ = localized.map_from_base.position();
-  Filter::State& x = filter_.state();
-  Filter::Covariance& p = filter_.covariance();
-  x[kHeading] = localized.map_from_base.heading();
-  const Vector3 bias(kBias0 * kBias0, kBias0 * kBias0, kHeadingBias0 * kHeadingBias0);
-  const Vector3 noise(kPositionNoise * kPositionNoise, kPositionNoise * kPositionNoise,
-                      kHeadingNoise * kHeadingNoise);
-  p.block<3, 3>(kBiasX, kBiasX) = bias.asDiagonal();
-  p.block<3, 3>(kX, kX) = (bias + noise).asDiagonal();
-  p.block<3, 3>(kX, kBiasX) = p.block<3, 3>(kBiasX, kX) = -p.block<3, 3>(kBiasX, kBiasX);
-  x[kLeft] = x[kRight] = half_width_;
-  p.block<2, 2>(kLeft, kLeft) = HalfWidthModel::unknown();
-  p(kTurnBias, kTurnBias) = kTurnBias0 * kTurnBias0;
-  p(kCameraYaw, kCameraYaw) = kCameraYaw0 * kCameraYaw0;
-  p.block<OffsetProfile::kKnots, OffsetProfile::kKnots>(kFirstKnot, kFirstKnot) = OffsetProfile::prior();
-  last_ = localized;
-}
-
-void LaneEstimator::give_up(const VehicleState& localized, const std::string& why) {
-  start(localized);
-  given_up_ = why;
+  filter_.emplace(noise_, localized, half_width_, sway_);
+  last_paint_.reset();
+  meter_.lose_bias();
+  agreed_ = 0.0;
 }
 
 void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& param) {
-  watch_.max_offset = param.max_offset;
-  const bool forgotten = last_paint_ && to_seconds(localized.stamp - *last_paint_) > kForgetTime;
-  const bool gap = last_ && to_seconds(localized.stamp - last_->stamp) > kLongestGap;
-  const bool broken = !filter_.sound();
-  if (last_ && informed() &&
-      (forgotten || gap || broken || has_jumped(*last_, localized) || localized.stamp <= last_->stamp)) {
-    start(localized);
-  }
-  if (last_) listen(localized);
-  if (!last_ || !informed()) {  // nothing to tell bias from place by
+  if (!last_) {
     last_ = localized;
     return;
   }
   const double dt = to_seconds(localized.stamp - last_->stamp);
-  if (to_seconds(localized.stamp - *last_paint_) > kHoldTime) decay(std::exp(-dt / param.decay_time));
-  follow_odometry(localized, dt);
-  follow_localization(localized);
-  last_ = localized;
-  const Filter::State& x = filter_.state();
-  const double offset = x.segment<2>(kBiasX).norm();
-  if (offset > param.max_offset || std::abs(x[kBiasHeading]) > kMaxHeadingBias) {
-    std::ostringstream why;
-    why.precision(3);
-    why << "the lane seemed to be " << offset << " m and " << std::abs(x[kBiasHeading])
-        << " rad from where localization puts it: not believed";
-    give_up(localized, why.str());
-  }
-}
-
-/// How noisy localization is: what one pose is off by from where odometry goes from the one before.
-void LaneEstimator::listen(const VehicleState& localized) {
-  const double dt = to_seconds(localized.stamp - last_->stamp);
-  const Pose2 expected = carried_on(*last_, dt);
-  const double aside = (localized.map_from_base.position() - expected.position()).norm();
-  const double turned = angle_difference(localized.map_from_base.heading(), expected.heading());
-  if (!(dt > 0.0) || !(aside < kLoudest) || !(std::abs(turned) < kMaxHeadingBias)) return;
-  const double share = std::min(1.0, dt / kListenTime);
-  position_variance_ +=
-      share * (0.25 * aside * aside - position_variance_);  // of two poses, in two directions
-  heading_variance_ += share * (0.5 * turned * turned - heading_variance_);
-}
-
-/// Back to what localization says, and to the lane that is expected.
-void LaneEstimator::decay(double kept) {
-  Eigen::Matrix<double, 6, 6> f = f.Identity();
-  f.topRightCorner<3, 3>() = (1.0 - kept) * Eigen::Matrix3d::Identity();
-  f.bottomRightCorner<3, 3>() *= kept;
-  filter_.predict_part<kX, 6>(f * filter_.state().segment<6>(kX), f, f.Zero());
-  auto half_widths = filter_.state().segment<2>(kLeft).array();
-  half_widths += (1.0 - kept) * (half_width_ - half_widths);
-}
-
-void LaneEstimator::follow_odometry(const VehicleState& to, double dt) {
-  const double way = 0.5 * (last_->speed + to.speed) * dt;
-  Eigen::Vector4d moved = filter_.state().segment<4>(kTurnBias);  // with the pose
-  const double turn = (0.5 * (last_->yaw_rate + to.yaw_rate) - moved[0]) * dt;
-  const double heading = moved[3] + 0.5 * turn;
-  const Point2 ahead(std::cos(heading), std::sin(heading)), left = left_of(ahead);
-  moved += Eigen::Vector4d(0.0, way * ahead.x(), way * ahead.y(), turn);
-  Eigen::Matrix4d f = f.Identity(), q = q.Zero();
-  f.block<2, 1>(1, 3) = way * left;
-  f(3, 0) = -dt;
-  const double along = kSpeedWalk * kSpeedWalk * dt + kSpeedScale * kSpeedScale * std::abs(to.speed * way);
-  const double aside = kSlipWalk * kSlipWalk * dt;
-  q(0, 0) = kTurnBiasWalk * kTurnBiasWalk * dt;
-  q.block<2, 2>(1, 1) = along * ahead * ahead.transpose() + aside * left * left.transpose();
-  q(3, 3) = kHeadingWalk * kHeadingWalk * dt;
-  filter_.predict_part<kTurnBias, 4>(moved, f, q);
-
-  const Vector3 bias_walk(kBiasWalk, kBiasWalk, kHeadingBiasWalk);
-  filter_.covariance().diagonal().segment<3>(kBiasX) += dt * bias_walk.cwiseAbs2();
-
-  filter_.covariance()(kCameraYaw, kCameraYaw) += kCameraYawWalk * kCameraYawWalk * dt;
-  const Eigen::Matrix2d kept = HalfWidthModel::transition(std::abs(way));
-  filter_.predict_part<kLeft, 2>(kept * filter_.state().segment<2>(kLeft), kept,
-                                 HalfWidthModel::noise(std::abs(way)));
-}
-
-void LaneEstimator::follow_localization(const VehicleState& localized) {
-  Filter::State& x = filter_.state();
-  Filter::Covariance& p = filter_.covariance();
-  const Point2 position = localized.map_from_base.position() - origin_;
-  const auto innovation = [&]() -> Vector3 {
-    return {position.x() - x[kX] - x[kBiasX], position.y() - x[kY] - x[kBiasY],
-            angle_difference(localized.map_from_base.heading(), x[kHeading] + x[kBiasHeading])};
-  };
-  const double position_noise = std::max(kPositionNoise, std::sqrt(position_variance_));
-  const Vector3 noise(position_noise, position_noise, std::max(kHeadingNoise, std::sqrt(heading_variance_)));
-  const auto expect = [&] {  // pose plus bias
-    Filter::Expected<3> expected;
-    expected.cross = p.middleCols<3>(kX) + p.middleCols<3>(kBiasX);
-    expected.covariance = expected.cross.middleRows<3>(kX) + expected.cross.middleRows<3>(kBiasX);
-    expected.covariance.diagonal() += noise.cwiseAbs2();
-    return expected;
-  };
-  Filter::Expected<3> expected = expect();
-  const Vector3 gap = innovation();
-  if (expected.squared_distance(gap) > kJumpDistance) {
-    // Vehicles do not jump, localization does: its bias is another one now. Headings are another matter:
-    // localization's hardly drift, and odometry's do where a yaw rate is wrong.
-    x.segment<2>(kBiasX) += gap.head<2>();
-    x[kHeading] += gap[2];
-    for (int i = 0; i < 2; ++i) p(kBiasX + i, kBiasX + i) += 0.05 * gap[i] * gap[i];
-    p(kHeading, kHeading) += gap[2] * gap[2];
-    expected = expect();
-  }
-  filter_.correct(innovation(), expected);
-}
-
-/// [m] the same as line_s_ for a place that is s along the line; the nearest one, on a lap.
-double LaneEstimator::s_along(const NavigationLine& line, double s) const {
-  const double step = s - last_projected_s_;
-  return line_s_ + (line.closed() ? std::remainder(step, line.length) : step);
-}
-
-void LaneEstimator::follow_line(const NavigationLine& line, const LineProjection& projection) {
-  if (!last_) return;
-  if (!informed()) start(*last_);
-  const double moved = s_along(line, projection.s) - line_s_;
-  last_projected_s_ = projection.s;
-  constexpr int kKnots = OffsetProfile::kKnots;
-  constexpr double kSpacing = OffsetProfile::kSpacing;
-  Filter::State& x = filter_.state();
-  Filter::Covariance& p = filter_.covariance();
-  if (line.id != line_id_ || !(std::abs(moved) <= kKnots * kSpacing)) {  // NaN is no way either
-    line_id_ = line.id;
-    next_left_ = next_right_ = NextBorder();
-    line_s_ = projection.s;
-    first_knot_s_ = line_s_ - kBehind * kSpacing;
-    x.tail<kKnots>().setZero();
-    p.rightCols<kKnots>().setZero();
-    p.bottomRows<kKnots>().setZero();
-    p.bottomRightCorner<kKnots, kKnots>() = OffsetProfile::prior();
-    // Each line has been recorded with an error of its own, and each lane has its width.
-    doubt_bias(kRecording * kRecording);
-    p.block<2, 2>(kLeft, kLeft) += HalfWidthModel::covariance(kOtherWidth * kOtherWidth, 0.0);
-    return;
-  }
-  line_s_ += moved;
-  const OffsetProfile::Next next = OffsetProfile::next();
-  while (std::abs(line_s_ - first_knot_s_ - kBehind * kSpacing) > 0.5 * kSpacing) {
-    const bool ahead = line_s_ - first_knot_s_ > kBehind * kSpacing;
-    Filter::Covariance f = f.Identity(), q = q.Zero();
-    f.bottomRightCorner<kKnots, kKnots>().setZero();
-    const int first = kFirstKnot, last = kFirstKnot + kKnots - 1;
-    for (int i = 1; i < kKnots; ++i) {
-      ahead ? f(first + i - 1, first + i) = 1.0 : f(first + i, first + i - 1) = 1.0;
+  if (!(dt > 0.0)) return;
+  meter_.listen(*last_, localized);
+  const double way = 0.5 * (last_->speed + localized.speed) * dt;
+  way_ += way;
+  seconds_ += dt;
+  if (informed()) {
+    filter_->move(*last_, localized, meter_.position_walk(), param.decay_time);
+    filter_->localize(localized, meter_.position_stddev(), meter_.heading_stddev());
+    paint_range_ = std::max(0.0, paint_range_ - way);
+    beyond_.move(way, dt);
+    const bool forgotten = to_seconds(localized.stamp - *last_paint_) > kForgetTime;
+    const double offset = filter_->state().segment<2>(LaneFilter::kBiasX).norm();
+    if (offset > param.max_offset) {
+      std::ostringstream why;
+      why.precision(3);
+      why << "the lane seemed to be " << offset << " m from where localization puts it: not believed";
+      given_up_ = why.str();
     }
-    const int fresh = ahead ? last : first, inward = ahead ? -1 : 1;
-    f(fresh, fresh) = next.from_near;  // by the knots as they were numbered before
-    f(fresh, fresh + inward) = next.from_far;
-    q(fresh, fresh) = next.variance;
-    filter_.predict(f, q);
-    first_knot_s_ += ahead ? kSpacing : -kSpacing;
+    if (forgotten || dt > kLongestGap || !filter_->sound() || offset > param.max_offset) {
+      filter_.reset();
+      which_.reset();
+    }
+  }
+  last_ = localized;
+}
+
+void LaneEstimator::doubt_motion() {
+  filter_.reset();
+}
+
+void LaneEstimator::follow_line(const NavigationLine& line, const LineProjection& projection,
+                                const std::vector<double>& others) {
+  if (!last_) return;
+  const VehicleState vehicle = corrected(*last_);
+  const double line_heading = vehicle.map_from_base.heading() - projection.heading_offset;
+  normal_ = normal_of(line_heading);
+  const double sideways = way_ * std::sin(0.5 * (projection.heading_offset + heading_offset_));
+  const double localized =
+      projection.l + normal_.dot(last_->map_from_base.position() - vehicle.map_from_base.position());
+  road_.centers = others;
+  road_.centers.push_back(0.0);
+  if (informed()) {
+    road_.half_width = filter_->half_width().value;
+    road_.half_width_stddev = filter_->half_width().stddev;
+  } else {
+    road_.half_width = half_width_;
+    road_.half_width_stddev = noise_.road.half_width;
+  }
+  if (line.id != line_id_ && which_.started()) which_.change_line(line_l_ + sideways - projection.l);
+  if (which_.started()) {
+    which_.move(sideways, std::hypot(0.1 * std::sqrt(seconds_), 0.02 * way_), localized);
+  } else {
+    which_.start(road_, localized);
+  }
+  line_id_ = line.id;
+  line_l_ = projection.l;
+  heading_offset_ = projection.heading_offset;
+  way_ = seconds_ = 0.0;
+  if (!informed()) start(*last_);
+  filter_->follow(line, projection.s);
+}
+
+std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const NavigationLine& line,
+                                            const LineProjection& projection, Time stamp) {
+  if (!last_ || !filter_) return {};
+  if (is_frozen(sides, line, projection)) {
+    const std::string why = "they are frozen: the numbers stay the same while the line beside them moves";
+    if (informed()) {  // they have led it astray
+      start(*last_);
+      filter_->follow(line, projection.s);
+      given_up_ = why;
+    }
+    return {why};
+  }
+  const double seconds =
+      last_image_ ? std::clamp(to_seconds(stamp - *last_image_), 0.0, kLongestImage) : kLongestImage;
+  last_image_ = stamp;
+  std::array<SeenSide, 2> seen = assign(sides, line, projection);
+  find_lane(seen, line, projection, seconds);
+  std::vector<std::string> ignored;
+  if (!lane_clear_) {
+    ignored.push_back("which lane the vehicle is in is not clear yet");
+    agreed_ = 0.0;
+    return ignored;
+  }
+  if (!informed()) {
+    bool all = true;
+    int count = 0;
+    for (const SeenSide& one : seen) {
+      if (!one.measurement) continue;
+      ++count;
+      if (!fits(one)) {
+        all = false;
+        ignored.push_back(refusal(one.name, one.measurement->near_offset()));
+      }
+    }
+    agreed_ = all ? agreed_ + seconds : 0.0;
+    if (agreed_ < (count == 2 ? kAgreeBoth : kAgreeOne)) return ignored;
+  }
+  const auto distance = [](const SeenSide& one) {
+    return one.measurement ? one.measurement->squared_distance : std::numeric_limits<double>::max();
+  };
+  if (distance(seen[1]) < distance(seen[0])) std::swap(seen[0], seen[1]);
+  bool any = false;
+  for (SeenSide& one : seen) {
+    if (any) measure(one, line, projection);  // the surer side has moved the state
+    if (!one.measurement) continue;
+    const double scale = std::exp(one.measurement->squared_distance > kMedian ? kScaleStep : -kScaleStep);
+    image_scale_ = std::clamp(image_scale_ * scale, kLeastScale, kMostScale);
+    if (!fits(one)) {
+      ignored.push_back(refusal(one.name, one.measurement->near_offset()));
+      continue;
+    }
+    filter_->correct(*one.measurement);
+    if (!any) left_paint_ = right_paint_ = BoundaryType::kUnknown;
+    (one.side == Side::kLeft ? left_paint_ : right_paint_) = one.paint->type;
+    paint_range_ = any ? std::max(paint_range_, one.paint->to) : one.paint->to;
+    any = true;
+  }
+  if (!filter_->sound()) {
+    filter_.reset();
+  } else if (any) {
+    last_paint_ = stamp;
+    given_up_.clear();
+    beyond_.see_nothing();
+    see_beyond(sides.next_left, Side::kLeft, line, projection.nearest_vertex, stamp);
+    see_beyond(sides.next_right, Side::kRight, line, projection.nearest_vertex, stamp);
+    const Estimate lateral = filter_->lateral(normal_);
+    meter_.see_bias(stamp, normal_, filter_->state().segment<2>(LaneFilter::kBiasX), lateral.stddev);
+    learn_sway(std::abs(last_->speed) * seconds);
+  }
+  return ignored;
+}
+
+/// Holds the paint against the lanes that there are, and moves the filter to the one that the vehicle is in.
+void LaneEstimator::find_lane(std::array<SeenSide, 2>& seen, const NavigationLine& line,
+                              const LineProjection& projection, double seconds) {
+  LineWalker walker(line, projection.nearest_vertex);
+  const BesideLine beside = walker.beside(filter_->pose().position() - line.origin);
+  if (!beside.exists) return;
+  const double offset = beside.lateral - filter_->offsets().at(filter_->knots_at(line, beside.s));
+  std::array<std::optional<WhichLane::Seen>, 2> paint;
+  for (const SeenSide& one : seen) {
+    if (!one.measurement) continue;
+    const LaneFilter::Measurement& m = *one.measurement;
+    const double there = m.innovation[0] + sign_of(one.side) * filter_->half_width().value - offset;
+    paint[there > 0.0 ? 0 : 1] = WhichLane::Seen{there, std::sqrt(m.covariance(0, 0))};
+  }
+  which_.see(paint[0], paint[1], seconds, road_);
+  const WhichLane::Place place = which_.likeliest();
+  lane_clear_ = place.share > (lane_clear_ ? kUnclear : kClear);
+  const double gap = place.offset - offset;
+  const double stddev = filter_->lateral(beside.normal).stddev;
+  if (!lane_clear_ || std::abs(gap) < std::max(kShift, 3.0 * stddev)) return;
+  filter_->shift(beside.normal, gap, std::hypot(place.stddev, 0.3));
+  meter_.lose_bias();
+  for (SeenSide& one : seen) measure(one, line, projection);
+}
+
+bool LaneEstimator::fits(const SeenSide& one) const {
+  return one.measurement->squared_distance < kGate &&
+         std::abs(one.measurement->near_offset()) < kOffsetGate * one.measurement->near_stddev();
+}
+
+void LaneEstimator::measure(SeenSide& one, const NavigationLine& line,
+                            const LineProjection& projection) const {
+  one.measurement.reset();
+  if (one.paint) {
+    one.measurement = filter_->measure(*one.paint, one.side, line, projection.nearest_vertex, image_scale_);
   }
 }
 
-/// Localization's bias may have changed by so much [m^2], and the vehicle's place with it.
-void LaneEstimator::doubt_bias(double variance) {
-  Filter::Covariance& p = filter_.covariance();
-  for (int i = 0; i < 2; ++i) {
-    p(kX + i, kX + i) += variance;
-    p(kBiasX + i, kBiasX + i) += variance;
-    p(kX + i, kBiasX + i) -= variance;
-    p(kBiasX + i, kX + i) -= variance;
+std::array<LaneEstimator::SeenSide, 2> LaneEstimator::assign(const SeenSides& sides,
+                                                             const NavigationLine& line,
+                                                             const LineProjection& projection) const {
+  std::array<SeenSide, 2> seen{SeenSide{Side::kLeft, "left", sides.left, {}},
+                               SeenSide{Side::kRight, "right", sides.right, {}}};
+  for (SeenSide& one : seen) measure(one, line, projection);
+  // Beside a border the camera and the map may not be of one mind yet on which lane the vehicle is in: the
+  // lane's left border may be on the right of the camera already, and the other way round.
+  constexpr double kNearEdge = 0.5, kSameBorder = 0.6;  // [m]
+  const double half_width = filter_->half_width().value;
+  const double to_left = half_width - projection.l, to_right = half_width + projection.l;
+  if (std::min(to_left, to_right) < kNearEdge) {
+    const bool at_left = to_left < to_right;
+    SeenSide &border = seen[at_left ? 0 : 1], &beyond = seen[at_left ? 1 : 0];
+    SeenSide crossed{border.side, beyond.name, beyond.paint, {}};
+    measure(crossed, line, projection);
+    const double offset = crossed.measurement ? std::abs(crossed.measurement->near_offset()) : kSameBorder;
+    if (offset < kSameBorder &&
+        !(border.measurement && std::abs(border.measurement->near_offset()) < offset)) {
+      border = crossed;
+      beyond.paint.reset();
+      beyond.measurement.reset();
+    }
   }
+  return seen;
+}
+
+void LaneEstimator::see_beyond(const std::optional<PaintSamples>& paint, Side side,
+                               const NavigationLine& line, std::size_t vertex, Time stamp) {
+  const auto measurement = paint ? filter_->measure(*paint, side, line, vertex, image_scale_) : std::nullopt;
+  if (!measurement) return;
+  // Measured as if it were the lane's own border: what it is off by is the width of the lane beyond.
+  const double own = filter_->half_width().value, distance = own + sign_of(side) * measurement->near_offset();
+  beyond_.see(side == Side::kLeft ? beyond_.left : beyond_.right, stamp, distance,
+              measurement->covariance(0, 0), own, paint->to, paint->type);
+}
+
+/// Whether paint says the same numbers as before, while the line has moved beside the vehicle.
+bool LaneEstimator::is_frozen(const SeenSides& sides, const NavigationLine& line,
+                              const LineProjection& projection) {
+  // By headings, since localization's position drifts and jumps.
+  const Pose2& pose = last_->map_from_base;
+  const Point2 position = pose.position() - line.origin;
+  LineWalker walker(line, projection.nearest_vertex);
+  Eigen::Vector2d shape;
+  for (int i = 0; i < 2; ++i) {
+    const Point2 normal = walker.beside(position + i * kShapeReach * pose.forward()).normal;
+    shape[i] = std::atan2(-pose.forward().dot(normal), -cross(pose.forward(), normal));
+  }
+  if (!sides.unchanged || line.id != frozen_.line_id) frozen_ = {false, line.id, shape};
+  if (((shape - frozen_.line_shape).cwiseAbs().array() > kShapeChange.array()).any()) frozen_.frozen = true;
+  return frozen_.frozen;
+}
+
+/// How far recordings sway: by the knots that have just been seen best.
+void LaneEstimator::learn_sway(double way) {
+  constexpr int kPassed = LaneFilter::kFirstKnot + 1;  // at the vehicle
+  const double seen =
+      filter_->state()[kPassed] * filter_->state()[kPassed] + filter_->covariance()(kPassed, kPassed);
+  const double share = std::min(1.0, way / kSwayWay);
+  const double variance = sway_ * sway_ + share * (std::min(seen, 9.0 * sway_ * sway_) - sway_ * sway_);
+  sway_ = std::clamp(std::sqrt(variance), kLeastSway, kMostSway);
+  filter_->set_sway(sway_);
+}
+
+VehicleState LaneEstimator::corrected(const VehicleState& localized) const {
+  if (!informed()) return localized;
+  VehicleState state = localized;
+  const Pose2 pose = filter_->pose();
+  state.map_from_base = Pose2(pose.position(), normalize_angle(pose.heading()));
+  return state;
+}
+
+bool LaneEstimator::apply(const NavigationLine& line, const LineProjection& projection,
+                          double least_half_width, LanePath& lane) const {
+  if (!informed() || lane.id != filter_->line_id()) return false;
+  lane.left_half_width = lane.right_half_width = std::max(least_half_width, filter_->half_width().value);
+  lane.seen = {lane.left_half_width, lane.right_half_width, lane.s_at_vehicle + paint_range_};
+  const LaneFilter::Offsets offsets = filter_->offsets();
+  const double start = filter_->knots_at(line, projection.s) - lane.s_at_vehicle / OffsetProfile::kSpacing;
+  for (PathPoint& point : lane.points) {
+    point.position += offsets.at(start + point.s / OffsetProfile::kSpacing) * left_of(point.direction);
+  }
+  compute_arc_length(lane.points);
+  compute_geometry(lane.points);
+  locate_vehicle(lane);
+  return true;
+}
+
+void LaneEstimator::apply_beside(std::vector<LanePath>& lanes, std::size_t current) const {
+  if (!informed() || lanes[current].id != filter_->line_id() || !lanes[current].seen) return;
+  beyond_.apply(lanes, current, last_->stamp);
+}
+
+FusionState LaneEstimator::state(const LineProjection& projection, double heading) const {
+  FusionState state;
+  if (!informed()) return state;
+  state.method = "estimator";
+  const Point2 left = normal_of(heading - projection.heading_offset), along(left.y(), -left.x());
+  const auto& x = filter_->state();
+  const auto& p = filter_->covariance();
+  const Eigen::Matrix2d place = p.block<2, 2>(LaneFilter::kX, LaneFilter::kX);
+  state.lateral_offset = filter_->lateral(left);
+  state.longitudinal_offset = {-along.dot(x.segment<2>(LaneFilter::kBiasX)),
+                               std::sqrt(along.dot(place * along))};
+  state.heading_offset = {x[LaneFilter::kBiasHeading],
+                          std::sqrt(p(LaneFilter::kHeading, LaneFilter::kHeading))};
+  state.left_half_width = state.right_half_width = filter_->half_width();
+  return state;
 }
 
 }  // namespace relative_map::core

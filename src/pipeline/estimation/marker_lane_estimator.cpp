@@ -17,17 +17,18 @@ constexpr double kCurvatureRate0 = 2e-3;  // [1/m^2]
 constexpr double kTurnBias0 = 0.005;      // [rad/s]
 constexpr double kCameraYaw0 = 0.006;     // [rad]
 // ... and of the random walks, by the root of the way [m] or the time [s].
-constexpr double kCurvatureRateWalk = 4e-5;  // [1/m^2] by way
-constexpr double kCurvatureWalk = 2e-4;      // [1/m] by way
-constexpr double kHeadingWalk = 0.002;       // [rad] by time
-constexpr double kSlipWalk = 0.02;           // [m] by time
-constexpr double kTurnBiasWalk = 5e-5;       // [rad/s] by time
-constexpr double kCameraYawWalk = 1e-4;      // [rad] by time
-constexpr double kLongestGap = 1.0;          // [s] between poses that odometry bridges
+constexpr double kCurvatureRateWalk = 1e-5;                                   // [1/m^2] by way
+constexpr double kCurvatureWalk = 3e-5;                                       // [1/m] by way
+constexpr double kHeadingWalk = 0.002;                                        // [rad] by time
+constexpr double kSlipWalk = 0.02;                                            // [m] by time
+constexpr double kTurnBiasWalk = 5e-5;                                        // [rad/s] by time
+constexpr double kCameraYawWalk = 1e-4;                                       // [rad] by time
+constexpr double kRoadSpeed = 15.0, kSlowestRoad = 5.0, kFastestRoad = 40.0;  // [m/s]
+constexpr double kLongestGap = 1.0;     // [s] between poses that odometry bridges
 constexpr double kNothingSeen = 10.0;   // [m] of paint left ahead, below which the vehicle's own way counts
 constexpr double kSlowest = 3.0;        // [m/s] at which it tells anything
 constexpr double kDriverSlope = 0.015;  // [rad] of it from the lane's, by the root of the time [s]
-constexpr double kDriverCurvature = 0.002;  // [1/m] likewise
+constexpr double kDriverCurvature = 0.004;  // [1/m] likewise
 constexpr double kPatience = 1.2;     // [s] of paint that does not fit; outliers last for up to a second
 constexpr double kWidthMargin = 1.2;  // a lane so much wider or narrower than the limits is none
 constexpr double kGate = 30.0;        // squared, in standard deviations
@@ -67,8 +68,11 @@ void MarkerLaneEstimator::move(const VehicleState& to) {
   q(kSlope, kSlope) = kHeadingWalk * kHeadingWalk * dt;
   q(kTurnBias, kTurnBias) = kTurnBiasWalk * kTurnBiasWalk * dt;
   q(kCameraYaw, kCameraYaw) = kCameraYawWalk * kCameraYawWalk * dt;
-  q(kCurvature, kCurvature) = kCurvatureWalk * kCurvatureWalk * way;
-  q(kCurvatureRate, kCurvatureRate) = kCurvatureRateWalk * kCurvatureRateWalk * way;
+  // Roads are built for a lateral acceleration: what their curvature changes by goes with the square of the
+  // speed.
+  const double slower = std::pow(kRoadSpeed / std::clamp(std::abs(to.speed), kSlowestRoad, kFastestRoad), 2);
+  q(kCurvature, kCurvature) = std::pow(slower * kCurvatureWalk, 2) * way;
+  q(kCurvatureRate, kCurvatureRate) = std::pow(slower * kCurvatureRateWalk, 2) * way;
   f.block<2, 2>(kLeft, kLeft) = HalfWidthModel::transition(way);
   q.block<2, 2>(kLeft, kLeft) = HalfWidthModel::noise(way);
   Filter::State turned = turned.Zero();
@@ -92,18 +96,20 @@ void MarkerLaneEstimator::follow_driver(const VehicleState& vehicle, double dt) 
 }
 
 MarkerLaneEstimator::Measurement MarkerLaneEstimator::measure(const PaintSamples& paint, Index side) const {
-  Measurement result;
+  SampleValues residual;
+  Eigen::Matrix<double, kPaintSamples, kStates> jacobian;
   const Cubic center = centerline();
   const double sign = side == kLeft ? 1.0 : -1.0;
   for (int i = 0; i < kPaintSamples; ++i) {
     const Point2& point = paint.points[static_cast<std::size_t>(i)];
     const double x = point.x(), aslant = std::hypot(1.0, center.slope(x));
-    auto row = result.jacobian.row(i);
+    auto row = jacobian.row(i);
     row << 1.0, x, x * x / 2.0, x * x * x / 6.0, 0.0, 0.0, 0.0, -x;
     row[side] = sign * aslant;
-    result.innovation[i] = point.y() - row.dot(filter_.state());
+    residual[i] = point.y() - row.dot(filter_.state());
   }
-  return result;
+  const auto fit = least_squares(paint.degree, kPaintSamples);
+  return {fit * residual, fit * jacobian};
 }
 
 std::vector<std::string> MarkerLaneEstimator::see(const SeenSides& sides, double half_width,

@@ -7,12 +7,11 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kStddev = 0.10;  // [m]
-constexpr double kLength = 25.0;  // [m] over which offsets are alike
+constexpr double kLength = 25.0;  // [m] over which a driver changes his place in the lane
 
 double kernel(double distance) {
   const double d = std::abs(distance) / kLength;
-  return kStddev * kStddev * (1.0 + d) * std::exp(-d);
+  return (1.0 + d) * std::exp(-d);
 }
 
 /// Whether any knot has a share at `place`; not at one that is no number.
@@ -30,19 +29,19 @@ double basis(double distance) {
 
 }  // namespace
 
-OffsetProfile::Next OffsetProfile::next() {
+OffsetProfile::Next OffsetProfile::next(double sway) {
   const double k0 = kernel(0.0), k1 = kernel(OffsetProfile::kSpacing),
                k2 = kernel(2.0 * OffsetProfile::kSpacing);
   Eigen::Matrix2d known;
   known << k0, k1, k1, k0;
   const Eigen::Vector2d cross(k1, k2), shares = known.inverse() * cross;
-  return {shares[0], shares[1], k0 - cross.dot(shares)};
+  return {shares[0], shares[1], sway * sway * (k0 - cross.dot(shares))};
 }
 
-OffsetProfile::Covariance OffsetProfile::prior() {
+OffsetProfile::Covariance OffsetProfile::prior(double sway) {
   Covariance covariance;
   for (int i = 0; i < kKnots; ++i) {
-    for (int j = 0; j < kKnots; ++j) covariance(i, j) = kernel(kSpacing * (i - j));
+    for (int j = 0; j < kKnots; ++j) covariance(i, j) = sway * sway * kernel(kSpacing * (i - j));
   }
   return covariance;
 }
@@ -60,7 +59,7 @@ Eigen::Matrix<double, 1, OffsetProfile::kKnots> OffsetProfile::shares(double pla
     const bool ahead = knot >= kKnots;
     const int steps = ahead ? knot - kKnots + 1 : -knot;
     if (steps > kBeyond) continue;
-    const Next step = next();
+    const Next step = next(0.0);
     // The share of the two end knots in the one that many steps past them.
     double near = 1.0, far = 0.0;
     for (int i = 0; i < steps; ++i) {
@@ -78,7 +77,7 @@ OffsetProfile::OffsetProfile(const Knots& knots) {
   constexpr int kZeros = 3, kAll = kKnots + 2 * (kBeyond + kZeros), kBegin = kZeros + kBeyond;
   Eigen::Matrix<double, kAll, 1> all = all.Zero();
   all.segment<kKnots>(kBegin) = knots;
-  const Next step = next();
+  const Next step = next(0.0);
   for (int i = kBegin - 1; i >= kZeros; --i)
     all[i] = step.from_near * all[i + 1] + step.from_far * all[i + 2];
   for (int i = kBegin + kKnots; i < kAll - kZeros; ++i) {

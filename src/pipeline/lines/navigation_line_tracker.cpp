@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace relative_map::core {
@@ -111,8 +112,15 @@ const NavigationLineTracker::Pass& NavigationLineTracker::choose(const std::vect
     const double driven = (vehicle.map_from_base.position() - last_->vehicle.map_from_base.position()).norm();
     if (gap_between(line, next.projection.s, *expected) < kContinuity + driven) return next;
   }
-  return best_by([](const Pass& pass) {
+  const auto cost = [](const Pass& pass) {
     return pass.projection.distance + kMetersPerRadian * std::abs(pass.projection.heading_offset);
+  };
+  // Of passes that fit alike, where a town's streets are driven twice, it is the one where the vehicle last
+  // was, or the first: a route is driven from its start.
+  const double most = cost(best_by(cost)) + kAlikeDistance;
+  return best_by([&](const Pass& pass) {
+    if (cost(pass) > most) return std::numeric_limits<double>::max();
+    return last_ ? gap_between(line, pass.projection.s, last_->s) : pass.projection.s;
   });
 }
 

@@ -108,11 +108,13 @@ std::optional<ImageQueue::Image> ImageQueue::look_at(const LaneMarkers& markers,
   const Pose2 base_from_sensor = now->to_local(*then).to_parent(markers.base_from_sensor);
   Image image{markers.stamp, {}};
   image.sides.unchanged = unchanged;
-  if (!left_fault) image.sides.left = sample_paint(markers.left, base_from_sensor);
-  if (!right_fault) image.sides.right = sample_paint(markers.right, base_from_sensor);
+  if (!left_fault)
+    image.sides.left = sample_paint(markers.left, base_from_sensor, config.lane_fusion.noise.camera);
+  if (!right_fault)
+    image.sides.right = sample_paint(markers.right, base_from_sensor, config.lane_fusion.noise.camera);
   const auto nearest = [&](const std::vector<LaneMarker>& beyond) -> std::optional<PaintSamples> {
     if (beyond.empty() || fault_of(beyond.front(), config.navigation_lane)) return std::nullopt;
-    return sample_paint(beyond.front(), base_from_sensor);
+    return sample_paint(beyond.front(), base_from_sensor, config.lane_fusion.noise.camera);
   };
   image.sides.next_left = nearest(markers.next_left);
   image.sides.next_right = nearest(markers.next_right);

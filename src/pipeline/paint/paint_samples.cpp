@@ -8,21 +8,14 @@ namespace relative_map::core {
 
 namespace {
 
-// Standard deviations of a marker of quality 1.
-constexpr double kOffset = 0.05;     // [m]
-constexpr double kSlope = 0.003;     // [-]
-constexpr double kCurvature = 6e-5;  // [1/m] of c2
-constexpr double kPoint = 0.02;      // [m] what a cubic does not follow
-// Of a camera that fits straight lines, where the lane bends.
-constexpr double kStraightCurvature = 0.02;  // [1/m] of c2
-constexpr double kStraightReach = 5.0;       // [m]
+constexpr double kPoint = 0.02;          // [m] of each point of the paint that the camera has seen
+constexpr double kCurvatureRate = 5e-7;  // [1/m^2] of c3
+constexpr double kStraight = 0.02;       // [m] by which a cubic bends that tells of no curvature
 
 // Paint beyond these is not the vehicle's own lane's.
 constexpr double kFarthest = 10.0;     // [m] beside the vehicle
 constexpr double kSteepest = 5.0;      // [-] slope
 constexpr double kMaxCurvature = 0.2;  // [1/m]
-
-using Distances = Eigen::Matrix<double, kPaintSamples, 1>;  // [m] from the camera
 
 constexpr double kStart = -2.0;  // [m] x from which on, behind the vehicle, it must be drivable
 constexpr double kStep = 1.0;    // [m]
@@ -37,14 +30,19 @@ bool drivable(const Cubic& cubic, double x_end) {
   return true;
 }
 
-/// Of a marker's points: its error is that of its coefficients.
-Eigen::Matrix<double, kPaintSamples, kPaintSamples> covariance_at(const Distances& x, double curvature,
-                                                                  double quality) {
-  const Distances one = x.Ones(), x2 = x.cwiseAbs2();
-  Eigen::Matrix<double, kPaintSamples, kPaintSamples> covariance =
-      kOffset * kOffset * one * one.transpose() + kSlope * kSlope * x * x.transpose() +
-      curvature * curvature * x2 * x2.transpose();
-  covariance.diagonal().array() += kPoint * kPoint;
+/// Of the terms of c(start + length t), where those of c(x) are off by `noise`.
+Eigen::Matrix4d covariance_of(double start, double length, const CameraNoise& noise, double quality) {
+  Eigen::Matrix4d shifted;  // powers of x by powers of t
+  const double a = start, l = length;
+  shifted << 1.0, a, a * a, a * a * a,       //
+      0.0, l, 2.0 * a * l, 3.0 * a * a * l,  //
+      0.0, 0.0, l * l, 3.0 * a * l * l,      //
+      0.0, 0.0, 0.0, l * l * l;
+  const Eigen::Vector4d stddev(noise.offset, noise.slope, noise.curvature, kCurvatureRate);
+  const auto& powers = sample_powers();
+  const Eigen::Matrix4d points = (powers.transpose() * powers).inverse();
+  const Eigen::Matrix4d covariance =
+      shifted * stddev.cwiseAbs2().asDiagonal() * shifted.transpose() + kPoint * kPoint * points;
   return covariance / (quality * quality);
 }
 
@@ -69,35 +67,42 @@ std::optional<std::string> fault_of(const LaneMarker& marker, const NavigationLa
   return fault.str();
 }
 
-PaintSamples sample_paint(const LaneMarker& marker, const Pose2& base_from_sensor) {
+const Eigen::Matrix<double, kPaintSamples, kPaintTerms>& sample_powers() {
+  static const auto kPowers = [] {
+    Eigen::Matrix<double, kPaintSamples, kPaintTerms> powers;
+    for (int i = 0; i < kPaintSamples; ++i) {
+      const double t = static_cast<double>(i) / (kPaintSamples - 1);
+      powers.row(i) << 1.0, t, t * t, t * t * t;
+    }
+    return powers;
+  }();
+  return kPowers;
+}
+
+Eigen::Matrix<double, kPaintTerms, kPaintSamples> least_squares(int degree, int count) {
+  const int terms = std::min({degree + 1, count, kPaintTerms});
+  const Eigen::MatrixXd powers = sample_powers().topLeftCorner(count, terms);
+  Eigen::Matrix<double, kPaintTerms, kPaintSamples> fit = fit.Zero();
+  fit.topLeftCorner(terms, count) = (powers.transpose() * powers).ldlt().solve(powers.transpose());
+  return fit;
+}
+
+PaintSamples sample_paint(const LaneMarker& marker, const Pose2& base_from_sensor, const CameraNoise& noise) {
   PaintSamples samples;
   samples.type = marker.type;
-  Distances x;
+  const double length = marker.view_range - marker.longitude_start;
   for (int i = 0; i < kPaintSamples; ++i) {
-    x[i] = marker.longitude_start + (marker.view_range - marker.longitude_start) * i / (kPaintSamples - 1);
+    const double x = marker.longitude_start + length * i / (kPaintSamples - 1);
     samples.points[static_cast<std::size_t>(i)] =
-        base_from_sensor.to_parent(Point2(x[i], marker.cubic.value(x[i])));
+        base_from_sensor.to_parent(Point2(x, marker.cubic.value(x)));
   }
   samples.from = samples.points.front().x();
   samples.to = samples.points.back().x();
-  samples.straight = marker.cubic.c2 == 0.0 && marker.cubic.c3 == 0.0;
-  samples.quality = marker.quality;
-  samples.covariance = covariance_at(x, kCurvature, marker.quality);
-  return samples;
-}
-
-PaintSamples near_part(const PaintSamples& straight) {
-  PaintSamples samples = straight;
-  const Point2 first = straight.points.front(), way = straight.points.back() - first;
-  const double share = std::min(1.0, kStraightReach / way.norm());
-  Distances x;
-  for (int i = 0; i < kPaintSamples; ++i) {
-    const double part = share * i / (kPaintSamples - 1);
-    samples.points[static_cast<std::size_t>(i)] = first + part * way;
-    x[i] = part * way.norm();
-  }
-  samples.to = samples.points.back().x();
-  samples.covariance = covariance_at(x, kStraightCurvature, straight.quality);
+  samples.degree = marker.degree;
+  const double far = marker.view_range;
+  samples.straight = std::abs(marker.cubic.c2) * far * far < kStraight &&
+                     std::abs(marker.cubic.c3) * far * far * far < kStraight;
+  samples.covariance = covariance_of(marker.longitude_start, length, noise, marker.quality);
   return samples;
 }
 

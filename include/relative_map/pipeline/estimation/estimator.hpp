@@ -20,6 +20,8 @@ struct LaneEstimate {
 /// Where the vehicle is among its lines, and where the lane that it is in lies beside its line.
 class Estimator {
  public:
+  explicit Estimator(const SensorNoise& noise) : lane_(noise) {}
+
   /// Odometry up to `localized`, and what localization says there.
   void move(const VehicleState& localized, const LaneFusionParam& param) { lane_.move(localized, param); }
   void doubt_motion() { lane_.doubt_motion(); }

@@ -12,10 +12,12 @@ namespace relative_map::core {
 /// The lane is where odometry, localization and all paint that was seen so far put it.
 class EstimatorMethod : public MapMethod {
  public:
+  explicit EstimatorMethod(const SensorNoise& noise) : noise_(noise), estimator_(noise) {}
+
   void move(const VehicleState& localized, const PipelineConfig& config) override;
   void see(const LaneMarkers& markers) override;
   void doubt_motion() override;
-  void reset() override { *this = EstimatorMethod(); }
+  void reset() override { *this = EstimatorMethod(noise_); }
   std::variant<FoundLanes, Status> find_lanes(const Tick& tick) override;
 
  private:
@@ -25,6 +27,7 @@ class EstimatorMethod : public MapMethod {
   std::variant<FoundLanes, Status> lane_of_markers(const std::vector<ImageQueue::Image>& images,
                                                    Status otherwise, const Tick& tick);
 
+  SensorNoise noise_;
   ImageQueue images_;
   std::optional<Time> last_image_;
   Estimator estimator_;

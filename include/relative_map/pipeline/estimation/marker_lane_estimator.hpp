@@ -39,8 +39,8 @@ class MarkerLaneEstimator {
   static constexpr int kStates = 8;
   using Filter = KalmanFilter<kStates>;
   struct Measurement {
-    Eigen::Matrix<double, kPaintSamples, 1> innovation;
-    Eigen::Matrix<double, kPaintSamples, kStates> jacobian;
+    PaintTerms innovation;
+    Eigen::Matrix<double, kPaintTerms, kStates> jacobian;
   };
 
   void start(double half_width);

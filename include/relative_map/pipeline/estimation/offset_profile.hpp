@@ -5,8 +5,8 @@
 namespace relative_map::core {
 
 /// The lateral offset of a lane from its recorded line, by s: a cubic B-spline over evenly spaced knots, so
-/// that heading and curvature are smooth. What it may be is a Gaussian process (Matern 3/2): about as large
-/// as a driver sways, and alike over tens of metres.
+/// that heading and curvature are smooth. What it may be is a Gaussian process (Matern 3/2): alike over tens
+/// of metres, and as large as the `sway` [m] that is given.
 class OffsetProfile {
  public:
   static constexpr int kKnots = 8;
@@ -15,7 +15,7 @@ class OffsetProfile {
   using Covariance = Eigen::Matrix<double, kKnots, kKnots>;
 
   /// Of knots of which nothing was seen yet [m^2].
-  static Covariance prior();
+  static Covariance prior(double sway);
   /// Share of each knot in the offset at `place`, in knots from the first one; past the ends the process
   /// goes on by itself and fades to zero.
   static Eigen::Matrix<double, 1, kKnots> shares(double place);
@@ -24,7 +24,7 @@ class OffsetProfile {
     double from_near, from_far;  ///< shares of the two
     double variance;
   };
-  static Next next();
+  static Next next(double sway);
 
   explicit OffsetProfile(const Knots& knots);
   /// [m] left positive, at `place` in knots from the first one.
