@@ -54,8 +54,8 @@ TEST(OffsetProfile, FadesToNothingPastWhatWasSeen) {
 
 TEST(OffsetProfile, APriorOfOneMoreKnotIsThePriorOfAllOfThem) {
   // The expectation and variance of a knot, given its two neighbours, agree with the joint covariance.
-  const OffsetProfile::Covariance p = OffsetProfile::prior();
-  const OffsetProfile::Next next = OffsetProfile::next();
+  const OffsetProfile::Covariance p = OffsetProfile::prior(0.1);
+  const OffsetProfile::Next next = OffsetProfile::next(0.1);
   const Eigen::Vector2d shares(next.from_near, next.from_far);
   const Eigen::Matrix2d known = p.block<2, 2>(0, 0);
   const Eigen::Vector2d cross(p(2, 1), p(2, 0));

@@ -9,11 +9,14 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kLongestGap = 2.0;    // [s] between poses that odometry bridges
-constexpr double kForgetTime = 60.0;   // [s] without paint until nothing is left worth having
-constexpr double kClear = 0.8;         // [-] of the belief in one lane: it is that one
-constexpr double kUnclear = 0.6;       // [-] ... and no more
-constexpr double kShift = 0.7;         // [m] at least, by which the lane is another than thought
+constexpr double kLongestGap = 2.0;   // [s] between poses that odometry bridges
+constexpr double kHoldTime = 1.0;     // [s] without paint until the estimate starts to fade
+constexpr double kForgetTime = 60.0;  // [s] without paint until nothing is left worth having
+constexpr double kClear = 0.8;        // [-] of the belief in one lane: it is that one
+constexpr double kUnclear = 0.6;      // [-] ... and no more
+constexpr double kShift = 0.7;        // [m] at least, by which the lane is another than thought
+constexpr double kAnother = 1.2;  // [m] of paint from the border of the lane that is clear: another border's
+constexpr double kOpeningGate = 2.0;   // standard deviations of the lane's width
 constexpr double kGate = 30.0;         // squared, in standard deviations: not this lane's paint
 constexpr double kOffsetGate = 3.5;    // standard deviations of a marker's mean offset
 constexpr double kAgreeBoth = 0.2;     // [s] of paint on both sides until the first is believed
@@ -49,7 +52,6 @@ void LaneEstimator::start(const VehicleState& localized) {
   filter_.emplace(noise_, localized, half_width_, sway_);
   last_paint_.reset();
   meter_.lose_bias();
-  agreed_ = 0.0;
 }
 
 void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& param) {
@@ -59,12 +61,14 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
   }
   const double dt = to_seconds(localized.stamp - last_->stamp);
   if (!(dt > 0.0)) return;
+  max_offset_ = param.max_offset;
   meter_.listen(*last_, localized);
   const double way = 0.5 * (last_->speed + localized.speed) * dt;
   way_ += way;
   seconds_ += dt;
   if (informed()) {
-    filter_->move(*last_, localized, meter_.position_walk(), param.decay_time);
+    const bool unseen = to_seconds(localized.stamp - *last_paint_) > kHoldTime;
+    filter_->move(*last_, localized, meter_.position_walk(), param.decay_time, unseen);
     filter_->localize(localized, meter_.position_stddev(), meter_.heading_stddev());
     paint_range_ = std::max(0.0, paint_range_ - way);
     beyond_.move(way, dt);
@@ -77,15 +81,24 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
       given_up_ = why.str();
     }
     if (forgotten || dt > kLongestGap || !filter_->sound() || offset > param.max_offset) {
-      filter_.reset();
-      which_.reset();
+      forget_place();
     }
   }
   last_ = localized;
 }
 
 void LaneEstimator::doubt_motion() {
+  forget_place();
+  // What was measured by it, too.
+  meter_ = LocalizationNoiseMeter(noise_.localization);
+  sway_ = noise_.road.sway;
+  image_scale_ = 1.0;
+}
+
+void LaneEstimator::forget_place() {
   filter_.reset();
+  which_.reset();
+  agreed_ = way_ = seconds_ = 0.0;
 }
 
 void LaneEstimator::follow_line(const NavigationLine& line, const LineProjection& projection,
@@ -128,6 +141,7 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
     if (informed()) {  // they have led it astray
       start(*last_);
       filter_->follow(line, projection.s);
+      agreed_ = 0.0;
       given_up_ = why;
     }
     return {why};
@@ -162,7 +176,12 @@ std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const Naviga
   };
   if (distance(seen[1]) < distance(seen[0])) std::swap(seen[0], seen[1]);
   bool any = false;
+  const bool opens = is_opening(seen);
   for (SeenSide& one : seen) {
+    if (any && opens) {
+      ignored.push_back(refusal(one.name, one.measurement->near_offset()));
+      break;
+    }
     if (any) measure(one, line, projection);  // the surer side has moved the state
     if (!one.measurement) continue;
     const double scale = std::exp(one.measurement->squared_distance > kMedian ? kScaleStep : -kScaleStep);
@@ -204,21 +223,34 @@ void LaneEstimator::find_lane(std::array<SeenSide, 2>& seen, const NavigationLin
     if (!one.measurement) continue;
     const LaneFilter::Measurement& m = *one.measurement;
     const double there = m.innovation[0] + sign_of(one.side) * filter_->half_width().value - offset;
-    paint[there > 0.0 ? 0 : 1] = WhichLane::Seen{there, std::sqrt(m.covariance(0, 0))};
+    paint[one.name == std::string("left") ? 0 : 1] = WhichLane::Seen{there, std::sqrt(m.covariance(0, 0))};
   }
   which_.see(paint[0], paint[1], seconds, road_);
   const WhichLane::Place place = which_.likeliest();
   lane_clear_ = place.share > (lane_clear_ ? kUnclear : kClear);
   const double gap = place.offset - offset;
-  const double stddev = filter_->lateral(beside.normal).stddev;
-  if (!lane_clear_ || std::abs(gap) < std::max(kShift, 3.0 * stddev)) return;
+  if (!lane_clear_ || std::abs(gap) < kShift || std::abs(gap) > max_offset_) return;
   filter_->shift(beside.normal, gap, std::hypot(place.stddev, 0.3));
   meter_.lose_bias();
   for (SeenSide& one : seen) measure(one, line, projection);
 }
 
+/// Whether the sides lie farther apart than they should: the lane opens into a second one. Its center stays
+/// with the side that has moved less.
+bool LaneEstimator::is_opening(const std::array<SeenSide, 2>& seen) const {
+  if (!seen[0].measurement || !seen[1].measurement) return false;
+  const double sign = sign_of(seen[0].side);
+  const LaneFilter::Measurement &a = *seen[0].measurement, &b = *seen[1].measurement;
+  const auto apart = a.jacobian.row(0) - b.jacobian.row(0);
+  const double variance =
+      apart * filter_->covariance() * apart.transpose() + a.covariance(0, 0) + b.covariance(0, 0);
+  const double wider = sign * (a.near_offset() - b.near_offset());
+  return wider > 0.0 && wider * wider > kOpeningGate * kOpeningGate * variance;
+}
+
 bool LaneEstimator::fits(const SeenSide& one) const {
-  return one.measurement->squared_distance < kGate &&
+  if (!informed() && std::abs(one.measurement->near_offset()) > max_offset_) return false;
+  return one.measurement->squared_distance < kGate && std::abs(one.measurement->near_offset()) < kAnother &&
          std::abs(one.measurement->near_offset()) < kOffsetGate * one.measurement->near_stddev();
 }
 

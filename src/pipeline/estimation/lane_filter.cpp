@@ -9,9 +9,10 @@ namespace {
 
 constexpr double kBehind = 1.5;  // knots behind the vehicle
 constexpr double kMostAslant =
-    0.3;                         // [-] cosine between the camera's side and the line's: paint that leads away
-constexpr double kBend = 0.2;    // [m] of the line along the paint
-constexpr double kSharp = 0.4;   // [rad]
+    0.3;                        // [-] cosine between the camera's side and the line's: paint that leads away
+constexpr double kBend = 0.05;  // [m] of the line along the paint
+constexpr double kStraightDoubt = 0.03;  // [-] of the difference between both
+constexpr double kSharp = 0.4;           // [rad]
 constexpr double kMisfit = 4.0;  // [-] standard deviations of what a polynomial can't follow, in what it can
 constexpr double kHalfWidthWalk =
     0.01;  // [m] by the root of the way [m]: lanes widen by metres over hundreds of them
@@ -29,7 +30,10 @@ double squared(double value) {
 
 LaneFilter::LaneFilter(const SensorNoise& noise, const VehicleState& localized, double half_width,
                        double sway)
-    : noise_(noise), sway_(sway), origin_(localized.map_from_base.position()) {
+    : noise_(noise),
+      sway_(sway),
+      expected_half_width_(half_width),
+      origin_(localized.map_from_base.position()) {
   auto& x = filter_.state();
   auto& p = filter_.covariance();
   x[kHeading] = localized.map_from_base.heading();
@@ -52,7 +56,7 @@ LaneFilter::LaneFilter(const SensorNoise& noise, const VehicleState& localized, 
 }
 
 void LaneFilter::move(const VehicleState& from, const VehicleState& to, double position_walk,
-                      double decay_time) {
+                      double decay_time, bool unseen) {
   const double dt = to_seconds(to.stamp - from.stamp);
   const auto& x = filter_.state();
   const OdometryNoise& odometry = noise_.odometry;
@@ -92,7 +96,11 @@ void LaneFilter::move(const VehicleState& from, const VehicleState& to, double p
   filter_.predict_part<kCameraOffset, 1>(One(mount * x[kCameraOffset]), One(mount),
                                          One(squared(camera.mount_offset) * (1.0 - mount * mount)));
   filter_.covariance()(kCameraYaw, kCameraYaw) += squared(camera.slope) * (1.0 - mount * mount);
-  filter_.covariance()(kHalfWidth, kHalfWidth) += squared(kHalfWidthWalk) * std::abs(way);
+  const double width_kept = unseen ? std::exp(-dt / decay_time) : 1.0,
+               unknown = squared(noise_.road.half_width);
+  filter_.predict_part<kHalfWidth, 1>(
+      One(expected_half_width_ + width_kept * (x[kHalfWidth] - expected_half_width_)), One(width_kept),
+      One(std::min(squared(kHalfWidthWalk) * std::abs(way), unknown)));
   filter_.covariance()(kRecording, kRecording) += squared(kRecordingWalk) * std::abs(way);
 }
 
@@ -219,18 +227,24 @@ LaneFilter::Measurement LaneFilter::fit(const PaintSamples& paint, const SampleV
   Measurement result;
   auto fit = least_squares(paint.degree, seen);
   result.innovation = fit * residual;
-  // Paint that is straight where the line is not: this camera fits straight lines, whatever it says.
-  const bool bends = result.innovation.tail<2>().norm() > kBend;
-  const int degree = paint.straight && bends ? 1 : paint.degree;
-  if (degree < paint.degree) fit = least_squares(degree, seen);
-  result.innovation = fit * residual;
+  int terms = std::min(paint.degree + 1, kPaintTerms);
+  PaintTerms unsure = unsure.Zero();  // between two ways to fit
+  if (paint.straight && result.innovation.tail<2>().norm() > kBend) {
+    // Paint that is straight where the line is not: this camera lays straight lines, whatever it says. Only
+    // its near end counts, and less where a straight line through all of the paint would lie elsewhere.
+    unsure[0] = kStraightDoubt * (residual[0] - least_squares(1, seen).row(0).dot(residual));
+    fit.setZero();
+    fit(0, 0) = 1.0;
+    result.innovation = fit * residual;
+    terms = 1;
+  }
   result.jacobian = fit * jacobian;
-  const int terms = std::min(degree + 1, kPaintTerms);
   result.covariance = Eigen::Matrix4d::Identity();
   result.covariance.topLeftCorner(terms, terms) = scale * paint.covariance.topLeftCorner(terms, terms);
+  result.covariance += unsure * unsure.transpose();
   // Where it can't, its weights are not known to be ours.
   const SampleValues misfit = residual - sample_powers() * result.innovation;
-  const double variance = misfit.head(seen).squaredNorm() / seen;
+  const double variance = terms == 1 ? 0.0 : misfit.head(seen).squaredNorm() / seen;
   result.covariance += kMisfit * kMisfit * variance * fit * fit.transpose();
   result.expected = filter_.expect(result.jacobian, result.covariance);
   result.squared_distance = result.expected.squared_distance(result.innovation);

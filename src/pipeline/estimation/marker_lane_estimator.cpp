@@ -17,8 +17,8 @@ constexpr double kCurvatureRate0 = 2e-3;  // [1/m^2]
 constexpr double kTurnBias0 = 0.005;      // [rad/s]
 constexpr double kCameraYaw0 = 0.006;     // [rad]
 // ... and of the random walks, by the root of the way [m] or the time [s].
-constexpr double kCurvatureRateWalk = 1e-5;                                   // [1/m^2] by way
-constexpr double kCurvatureWalk = 3e-5;                                       // [1/m] by way
+constexpr double kCurvatureRateWalk = 2e-5;                                   // [1/m^2] by way
+constexpr double kCurvatureWalk = 6e-5;                                       // [1/m] by way
 constexpr double kHeadingWalk = 0.002;                                        // [rad] by time
 constexpr double kSlipWalk = 0.02;                                            // [m] by time
 constexpr double kTurnBiasWalk = 5e-5;                                        // [rad/s] by time

@@ -85,9 +85,11 @@ class LaneEstimator {
         Eigen::Vector2d::Zero();  ///< [rad] that line's directions when paint last changed
   };
 
+  void forget_place();
   void start(const VehicleState& localized);
   void find_lane(std::array<SeenSide, 2>& seen, const NavigationLine& line, const LineProjection& projection,
                  double seconds);
+  bool is_opening(const std::array<SeenSide, 2>& seen) const;
   bool fits(const SeenSide& one) const;
   void measure(SeenSide& one, const NavigationLine& line, const LineProjection& projection) const;
   std::array<SeenSide, 2> assign(const SeenSides& sides, const NavigationLine& line,
@@ -108,6 +110,7 @@ class LaneEstimator {
   double line_l_ = 0.0;               ///< [m] of the vehicle beside its line
   double heading_offset_ = 0.0;       ///< [rad] from the line
   double way_ = 0.0, seconds_ = 0.0;  ///< [m], [s] since the last tick
+  double max_offset_ = 30.0;          ///< [m] LaneFusionParam
   double half_width_ = 1.75;          ///< [m] expected where paint tells nothing
   double sway_;                       ///< [m] of recordings, as measured
   double image_scale_ = 1.0;          ///< [-] of the camera's variance, as measured

@@ -56,8 +56,10 @@ class LaneFilter {
   LaneFilter(const SensorNoise& noise, const VehicleState& localized, double half_width, double sway);
 
   /// From one pose's time to the next, by speed and yaw rate. `position_walk` [m/sqrt(s)] of localization's
-  /// bias, which decays in `decay_time` [s].
-  void move(const VehicleState& from, const VehicleState& to, double position_walk, double decay_time);
+  /// bias, which decays in `decay_time` [s]; where no paint is seen, the lane's width goes back to what is
+  /// expected in that time, too.
+  void move(const VehicleState& from, const VehicleState& to, double position_walk, double decay_time,
+            bool unseen);
   /// `position_stddev` [m] and `heading_stddev` [rad]: white noise of this pose. A pose that cannot be is a
   /// jump of localization, and becomes bias: vehicles do not jump.
   void localize(const VehicleState& localized, double position_stddev, double heading_stddev);
@@ -115,8 +117,9 @@ class LaneFilter {
 
   KalmanFilter<kStates> filter_;
   SensorNoise noise_;
-  double sway_;    ///< [m]
-  Point2 origin_;  ///< [m] map coordinates that kX and kY are relative to
+  double sway_;                 ///< [m]
+  double expected_half_width_;  ///< [m] where paint tells nothing
+  Point2 origin_;               ///< [m] map coordinates that kX and kY are relative to
   std::string line_id_;
   double line_s_ = 0.0;        ///< [m] of the vehicle along the line, laps counted on
   double first_knot_s_ = 0.0;  ///< [m] the same for the first knot
