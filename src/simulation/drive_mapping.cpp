@@ -12,8 +12,8 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr Time kTickPeriod = std::chrono::milliseconds(100);
-constexpr Time kSettleTime = std::chrono::seconds(1);
+constexpr Duration kTickPeriod = std::chrono::milliseconds(100);
+constexpr Duration kSettleTime = std::chrono::seconds(1);
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -73,12 +73,12 @@ class Scene {
                        [&](const std::string& remark) { return remark.find(words) != std::string::npos; });
   }
 
-  const Time step = std::chrono::milliseconds(100);
+  const Duration step = std::chrono::milliseconds(100);
 
  private:
   PipelineConfig config_;
   RelativeMapPipeline pipeline_;
-  Time now_ = std::chrono::seconds(1000);
+  Time now_ = at_seconds(1000.0);
   std::optional<std::uint32_t> sequence_num_;
 };
 

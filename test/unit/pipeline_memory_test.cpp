@@ -38,7 +38,7 @@ double length_with(const std::optional<Chassis>& chassis, bool reset = false) {
   Scene scene({}, markers_alone());
   if (chassis) {
     Chassis relative = *chassis;
-    relative.stamp += scene.now() + scene.step;
+    relative.stamp += (scene.now() + scene.step).time_since_epoch();
     scene.pipeline().set_chassis(relative);
   }
   if (reset) scene.pipeline().reset();
@@ -52,7 +52,7 @@ double length_with(const std::optional<Chassis>& chassis, bool reset = false) {
 }
 
 TEST(PipelineMemory, AChassisCountsWhileItIsOfNow) {
-  const auto chassis = [](double age) { return Chassis{from_seconds(-age), 30.0}; };
+  const auto chassis = [](double age) { return Chassis{at_seconds(-age), 30.0}; };
   EXPECT_NEAR(length_with(std::nullopt), 162.0, 2.0) << "20 m/s of localization";
   EXPECT_NEAR(length_with(chassis(0.0)), 242.0, 2.0) << "30 m/s of the chassis";
   EXPECT_NEAR(length_with(chassis(0.9)), 242.0, 2.0);

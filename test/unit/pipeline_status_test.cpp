@@ -55,8 +55,8 @@ TEST(PipelineStatus, LocalizationThatIsInvalid) {
 
 TEST(PipelineStatus, NoLinesYet) {
   RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>());
-  pipeline.set_localization(localization_at(kOnTheRoad, std::chrono::seconds(5)));
-  expect_empty(pipeline.tick(std::chrono::seconds(5)), StatusCode::kNoNavigationLine, "received yet");
+  pipeline.set_localization(localization_at(kOnTheRoad, at_seconds(5.0)));
+  expect_empty(pipeline.tick(at_seconds(5.0)), StatusCode::kNoNavigationLine, "received yet");
 }
 
 TEST(PipelineStatus, LinesThatAreAllUnusable) {

@@ -157,7 +157,7 @@ void PoseCollector::add(const sensor_msgs::NavSatFix& message, const ros::Time& 
   antenna_ = link == base_frame_ ? "" : link;
   places_.push_back({message.longitude, message.latitude, message.altitude});
   core::RecordedPose pose;
-  pose.stamp = core::to_seconds(stamp_or(message.header.stamp, received));
+  pose.stamp = core::seconds_since_epoch(stamp_or(message.header.stamp, received));
   pose.heading = kNaN;
   pose.deviation = deviation_of(message);
   fixes_.push_back(pose);
@@ -221,7 +221,7 @@ CarriedPoses PoseCollector::poses(core::GeoReference& reference) const {
       heading = pose.heading;
     }
     result.poses.push_back(
-        {core::to_seconds(pose.stamp), pose.position.x(), pose.position.y(), pose.position.z(), heading});
+        {core::seconds_since_epoch(pose.stamp), pose.position.x(), pose.position.y(), pose.position.z(), heading});
     arrivals.push_back(entry.arrival);
   }
   if (geographic()) {

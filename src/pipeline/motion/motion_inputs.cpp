@@ -8,7 +8,7 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr Time kLate =
+constexpr Duration kLate =
     std::chrono::milliseconds(500);  // an older message than the newest, but of the same time
 
 }  // namespace

@@ -9,11 +9,11 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr Time kKept = std::chrono::seconds(3);                     // of poses
-constexpr Time kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
-constexpr Time kSpeedInterval = std::chrono::milliseconds(500);     // over which a speed is measured
-constexpr Time kZeroInterval = std::chrono::seconds(1);             // of yaw rates of exactly 0
-constexpr Time kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
+constexpr Duration kKept = std::chrono::seconds(3);                     // of poses
+constexpr Duration kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
+constexpr Duration kSpeedInterval = std::chrono::milliseconds(500);     // over which a speed is measured
+constexpr Duration kZeroInterval = std::chrono::seconds(1);             // of yaw rates of exactly 0
+constexpr Duration kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
 
 }  // namespace
 
@@ -63,7 +63,7 @@ std::optional<Pose2> PoseBuffer::at(Time stamp) const {
   if (after != states_.end() && after->stamp == stamp) return after->map_from_base;
   if (after == states_.begin() || after == states_.end()) {
     const VehicleState& end = after == states_.end() ? states_.back() : states_.front();
-    const Time beyond = stamp - end.stamp;
+    const Duration beyond = stamp - end.stamp;
     if (beyond > kMaxExtrapolation || -beyond > kMaxExtrapolation) return std::nullopt;
     return carried_on(end, to_seconds(beyond));
   }

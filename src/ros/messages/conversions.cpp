@@ -174,12 +174,14 @@ void turn_rfu_to_flu(core::Localization& localization) {
 }  // namespace
 
 core::Time to_core(const ros::Time& time) {
-  return std::chrono::seconds(time.sec) + std::chrono::nanoseconds(time.nsec);
+  return core::Time(std::chrono::seconds(time.sec) + std::chrono::nanoseconds(time.nsec));
 }
 
 ros::Time to_ros(core::Time time) {
   ros::Time result;
-  return time.count() > 0 ? result.fromNSec(static_cast<uint64_t>(time.count())) : result;
+  const core::Duration since_epoch = time.time_since_epoch();
+  if (since_epoch > core::Duration::zero()) result.fromNSec(static_cast<uint64_t>(since_epoch.count()));
+  return result;
 }
 
 core::NavigationInfo to_core(const NavigationInfo& message) {
