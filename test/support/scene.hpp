@@ -44,10 +44,10 @@ class Scene {
     Chassis chassis;
     chassis.stamp = now_;
     chassis.speed = speed;
-    pipeline_.set_chassis(chassis);
+    pipeline_.set_chassis(chassis, now_);
     Localization localization = localization_at(pose, now_, speed);
     localization.angular_velocity_body.z() = yaw_rate;
-    pipeline_.set_localization(localization);
+    pipeline_.set_localization(localization, std::nullopt, now_);
     return tick();
   }
   /// Seen at the pose and time of the next call of `at`.

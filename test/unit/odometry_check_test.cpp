@@ -104,5 +104,19 @@ TEST(OdometryCheck, AVehicleAtRestTellsNothing) {
   EXPECT_TRUE(check.trusts_speed() && check.trusts_yaw_rate());
 }
 
+TEST(OdometryCheck, DriftAndJumpsAtRestAreNoVerdictAgainstASpeedOfZero) {
+  for (const double drift : {0.3, 0.7, 1.1}) {  // [m/s] ahead
+    OdometryCheck check;
+    for (int i = 0; i < 1200; ++i) {
+      VehicleState state;
+      state.stamp = at_seconds(0.05 * i);
+      state.map_from_base =
+          Pose2(Point2(0.05 * i * drift + (i / 60) * 3.0, 0.0), 0.0);  // put on by 3 m in 3 s
+      check.add(state);
+    }
+    EXPECT_TRUE(check.trusts_speed()) << drift;
+  }
+}
+
 }  // namespace
 }  // namespace relative_map::core

@@ -64,13 +64,15 @@ TEST(PipelineMemory, AChassisCountsWhileItIsOfNow) {
 TEST(PipelineMemory, ABadInputIsToldThoughAGoodOneReplacedIt) {
   Scene scene(test::three_straight_lines());
   scene.at(kOnTheRoad);
-  scene.pipeline().set_chassis({scene.now(), 1000.0});
-  Localization localization = localization_at(kOnTheRoad, scene.now() + from_seconds(0.01));
+  const Time between = scene.now() + from_seconds(0.01);
+  scene.pipeline().set_chassis({between, 1000.0});
+  Localization localization = localization_at(kOnTheRoad, between);
   localization.position.x() = std::numeric_limits<double>::quiet_NaN();
   scene.pipeline().set_localization(localization);
   LaneMarkers markers = lane_about({0.0});
   markers.left.view_range = -5.0;
-  scene.see(markers);
+  markers.stamp = between;
+  scene.pipeline().set_lane_markers(markers);
   scene.see(lane_about({0.0}));
   EXPECT_EQ(scene.at(kOnTheRoad).status.code, StatusCode::kOk);
   for (const char* words :

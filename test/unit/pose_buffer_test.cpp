@@ -92,13 +92,41 @@ TEST(PoseBuffer, ForgetsTheFutureWhereTimeIsSetBack) {
   EXPECT_EQ(buffer.at(at_seconds(5.25))->position().x(), -1.0);
 }
 
-TEST(PoseBuffer, ForgetsWhereItWasBeforeAJump) {
+TEST(PoseBuffer, KeepsItsHistoryOverAJump) {
   PoseBuffer buffer;
   buffer.add(vehicle_at(Pose2(Point2(0.0, 0.0), 0.0), 1.0, 10.0));
   buffer.add(vehicle_at(Pose2(Point2(30.0, 0.0), 0.0), 1.1, 10.0));
   EXPECT_NEAR(buffer.at(at_seconds(1.05))->position().x(), 29.5, 1e-9) << "not half way between";
+  EXPECT_NEAR(buffer.at(at_seconds(1.0))->position().x(), 29.0, 1e-9) << "where it lies from the new one";
   buffer.add(vehicle_at(Pose2(Point2(34.0, 0.0), 0.0), 1.2, 10.0));
   EXPECT_NEAR(buffer.at(at_seconds(1.15))->position().x(), 32.0, 1e-9) << "3 m more than driven is no jump";
+}
+
+TEST(PoseBuffer, AJumpMovesNothingThatWasSeen) {
+  PoseBuffer straight, jumping;
+  for (int i = 0; i <= 40; ++i) {
+    const double t = 0.05 * i;
+    VehicleState state = vehicle_at(test::along_arc(Pose2(), 0.02, 12.0 * t), t, 12.0);
+    state.yaw_rate = 0.24;
+    straight.add(state);
+    if (t > 1.5) state.map_from_base = Pose2(Point2(-40.0, 25.0), 0.4).to_parent(state.map_from_base);
+    jumping.add(state);
+  }
+  for (const double ago : {0.2, 1.0, 1.9}) {
+    const auto seen = [&](const PoseBuffer& buffer) {
+      return buffer.at(at_seconds(2.0))->to_local(*buffer.at(at_seconds(2.0 - ago)));
+    };
+    EXPECT_NEAR((seen(straight).position() - seen(jumping).position()).norm(), 0.0, 0.01) << ago;
+    EXPECT_NEAR(seen(straight).heading(), seen(jumping).heading(), 1e-6) << ago;
+  }
+}
+
+TEST(PoseBuffer, KeepsAsLongAsItIsTold) {
+  PoseBuffer buffer;
+  buffer.keep(std::chrono::seconds(8));
+  for (int i = 0; i <= 1000; ++i) buffer.add(vehicle_at(Pose2(Point2(i, 0.0), 0.0), 0.02 * i, 50.0));
+  EXPECT_TRUE(buffer.at(at_seconds(12.1)));
+  EXPECT_FALSE(buffer.at(at_seconds(11.5)));
 }
 
 TEST(PoseBuffer, KeepsAFewSecondsOnly) {

@@ -204,6 +204,18 @@ TEST(Jumps, AreWaysThatNoSpeedExplains) {
   EXPECT_TRUE(after(5.1, 0.0));
   EXPECT_FALSE(after(19.0, 1.0));
   EXPECT_TRUE(after(21.0, 1.0));
+  EXPECT_TRUE(after(kNaN, 1.0)) << "no place that can be driven to";
+}
+
+TEST(VehicleState, KeepsWhatLocalizationSaysOfItsNoise) {
+  Localization localization;
+  localization.heading = 1.0;
+  EXPECT_TRUE(std::isnan(std::get<VehicleState>(make_vehicle_state(localization, {})).position_stddev));
+  localization.position_stddev = 0.7;
+  localization.heading_stddev = 0.02;
+  const auto state = std::get<VehicleState>(make_vehicle_state(localization, {}));
+  EXPECT_EQ(state.position_stddev, 0.7);
+  EXPECT_EQ(state.heading_stddev, 0.02);
 }
 
 }  // namespace
