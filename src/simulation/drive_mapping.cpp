@@ -31,11 +31,11 @@ class PipelineMapMaker : public MapMaker {
 
   void deliver(const Delivery& delivery) override {
     if (const auto* localization = std::get_if<Localization>(&delivery.message)) {
-      pipeline_.set_localization(*localization);
+      pipeline_.set_localization(*localization, std::nullopt, delivery.time);
     } else if (const auto* chassis = std::get_if<Chassis>(&delivery.message)) {
-      pipeline_.set_chassis(*chassis);
+      pipeline_.set_chassis(*chassis, delivery.time);
     } else if (deliver_markers_) {
-      pipeline_.set_lane_markers(std::get<LaneMarkers>(delivery.message));
+      pipeline_.set_lane_markers(std::get<LaneMarkers>(delivery.message), delivery.time);
     }
   }
 
