@@ -81,7 +81,7 @@ bool PoseCollector::note_source(const std_msgs::Header& header, const std::strin
     ++of_others_;
     return false;
   }
-  arrival_ = {core::to_seconds(to_core(received)), header.seq};
+  arrival_ = {core::seconds_since_epoch(to_core(received)), header.seq};
   const std::string of_frame = frame.empty() ? "" : "frame '" + frame + "'";
   const std::string name = publisher.empty() ? of_frame : "'" + publisher + "' " + of_frame;
   const auto [source, is_new] = sources_.insert({name, {arrival_.received, arrival_.received}});
@@ -220,8 +220,8 @@ CarriedPoses PoseCollector::poses(core::GeoReference& reference) const {
       pose = core::carry_to_base(pose, *transforms_(entry.link, base_frame_));
       heading = pose.heading;
     }
-    result.poses.push_back(
-        {core::seconds_since_epoch(pose.stamp), pose.position.x(), pose.position.y(), pose.position.z(), heading});
+    result.poses.push_back({core::seconds_since_epoch(pose.stamp), pose.position.x(), pose.position.y(),
+                            pose.position.z(), heading});
     arrivals.push_back(entry.arrival);
   }
   if (geographic()) {
