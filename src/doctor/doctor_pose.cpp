@@ -15,7 +15,12 @@ constexpr double kAgree = 5.0 * kPi / 180.0;           // [rad] heading and orie
 constexpr double kSteady = 5.0 * kPi / 180.0;          // [rad] spread of what is constant
 constexpr double kQuarterMargin = 10.0 * kPi / 180.0;  // [rad] about a quarter turn
 constexpr double kSlip = 30.0 * kPi / 180.0;           // [rad] between heading and course of a car in a bend
+constexpr double kFixed = 0.1 * kPi / 180.0;           // [rad] spread of what does not turn
+constexpr double kTurns = 5.0 * kPi / 180.0;           // [rad] spread of what does
+constexpr double kRefused = 20.0 * kPi / 180.0;        // [rad] off the course: the map node refuses it
+constexpr double kNoOffset = 1.5 * kPi / 180.0;        // [rad] off the course that nobody minds
 constexpr std::size_t kEnoughLegs = 3;
+constexpr std::size_t kManyLegs = 6;  // a small offset takes more of them
 
 bool is_about(double angle, double target, double margin) {
   return std::abs(angle_difference(angle, target)) < margin;
@@ -49,6 +54,42 @@ bool is_compass_heading(const std::vector<Leg>& legs) {
 bool heading_is_given(const Evidence& evidence) {
   return std::any_of(evidence.poses.begin(), evidence.poses.end(),
                      [](const PoseSample& pose) { return std::isfinite(pose.heading); });
+}
+
+/// Whether the orientation stays as it is while the vehicle turns.
+bool orientation_stands(const Evidence& evidence) {
+  std::vector<double> orientations, headings, courses;
+  for (const PoseSample& pose : evidence.poses) {
+    orientations.push_back(pose.orientation);
+    headings.push_back(pose.heading);
+  }
+  for (const Leg& leg : evidence.legs) courses.push_back(leg.course);
+  return mean_direction(orientations).spread < kFixed &&
+         (mean_direction(headings).spread > kTurns || mean_direction(courses).spread > kTurns);
+}
+
+Finding standing_orientation(const Evidence& evidence) {
+  return wrong(
+      evidence.seen.localization.topic.name + ": the yaw of pose.orientation stays at " +
+          degrees(evidence.poses.back().orientation) + " while the vehicle turns",
+      "fill pose.orientation with the rotation of the localized link, or set it to 0, 0, 0, 0: the map "
+      "node then takes pose.heading");
+}
+
+/// Of a direction that is off by the same small angle all the time; none: it is not, or not for certain.
+std::optional<Finding> steady_offset(const Evidence& evidence, const MeanDirection& off,
+                                     const std::string& field) {
+  const auto legs = static_cast<double>(evidence.legs.size());
+  const bool certain =
+      evidence.legs.size() >= kManyLegs && std::abs(off.mean) > 3.0 * off.spread / std::sqrt(legs);
+  if (std::abs(off.mean) < kNoOffset || !certain) return std::nullopt;
+  return note(
+      evidence.seen.localization.topic.name + ": " + field + " points " +
+          fixed(std::abs(off.mean) * 180.0 / kPi, 1) + " degrees to the " +
+          (off.mean > 0.0 ? "left" : "right") +
+          " of where the vehicle moves, all the time; the map node corrects it by that",
+      "turn the sensor's mounting angle by that, or give directions from the map's grid north (not from "
+      "true or magnetic north)");
 }
 
 /// The other convention than the one that is set.
@@ -104,6 +145,7 @@ Findings heading_is_in_radians(const Evidence& evidence) {
 Findings orientation_fits_heading(const Evidence& evidence) {
   const MeanDirection off = heading_from_orientation(evidence.poses);
   if (std::isnan(off.mean) || !evidence.heading_is_an_angle()) return {};
+  if (orientation_stands(evidence)) return {standing_orientation(evidence)};
   const std::string& topic = evidence.seen.localization.topic.name;
   if (std::abs(off.mean) < kAgree && off.spread < kSteady) {
     return {ok(topic + ": heading and orientation agree")};
@@ -129,11 +171,16 @@ Findings heading_fits_motion(const Evidence& evidence) {
   const bool from_heading = heading_is_given(evidence);
   const Leg& last = evidence.legs.back();
   const std::string& topic = evidence.seen.localization.topic.name;
-  if (std::abs(off.mean) < kSlip) return {ok(topic + ": the vehicle moves where it points")};
-  const std::string what = topic + ": " + (from_heading ? "pose.heading" : "the yaw of pose.orientation") +
-                           " is " + degrees(from_heading ? last.heading : last.orientation) +
-                           ", but the position moves towards " + degrees(last.course) +
-                           " (counter-clockwise from east)";
+  const std::string field = from_heading ? "pose.heading" : "the yaw of pose.orientation";
+  if (!from_heading && orientation_stands(evidence)) return {standing_orientation(evidence)};
+  const bool steady = off.spread < kSteady;
+  if (std::abs(off.mean) < (steady ? kRefused : kSlip)) {
+    if (auto offset = steady_offset(evidence, off, field)) return {std::move(*offset)};
+    return {ok(topic + ": the vehicle moves where it points")};
+  }
+  const std::string what =
+      topic + ": " + field + " is " + degrees(from_heading ? last.heading : last.orientation) +
+      ", but the position moves towards " + degrees(last.course) + " (counter-clockwise from east)";
   if (from_heading && is_compass_heading(evidence.legs)) {
     return {wrong(what + ": this is a compass heading, clockwise from north",
                   "publish pi/2 - that angle, counter-clockwise from east")};

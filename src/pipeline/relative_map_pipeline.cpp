@@ -22,27 +22,31 @@ double width_beside(const std::vector<WidthSample>& samples, double s_at_vehicle
 }  // namespace
 
 bool RelativeMapPipeline::set_localization(const Localization& link,
-                                           const std::optional<Eigen::Isometry3d>& link_from_base) {
-  const MotionInputs::News news = motion_.take(link, link_from_base, config_->max_age);
+                                           const std::optional<Eigen::Isometry3d>& link_from_base,
+                                           std::optional<Time> received) {
+  const MotionInputs::News news = motion_.take(link, link_from_base, config_->max_age, received);
   if (news.time_went_back) forget_what_was_seen();
   note(news.remarks);
   for (MapMethod* method : {static_cast<MapMethod*>(&estimated_), static_cast<MapMethod*>(&fixed_weight_)}) {
     if (news.odometry_failed) method->doubt_motion();
     if (news.moved) method->move(motion_.poses().newest(), *config_);
   }
-  return !news.late;
+  return !news.dropped;
 }
 
-void RelativeMapPipeline::set_lane_markers(const LaneMarkers& received) {
-  const Checked<LaneMarkers> markers = check_lane_markers(received);
+void RelativeMapPipeline::set_lane_markers(const LaneMarkers& given, std::optional<Time> received) {
+  const StampOrder::Verdict order = marker_order_.judge(given.stamp, received, config_->max_age.lane_markers);
+  if (!order.remark.empty()) note({order.remark});
+  if (!order.take) return;
+  const Checked<LaneMarkers> markers = check_lane_markers(given);
   note(markers.remarks);
   markers_ = NewestMarkers{markers.input.stamp, markers.remarks};
   estimated_.see(markers.input);
   fixed_weight_.see(markers.input);
 }
 
-void RelativeMapPipeline::set_chassis(const Chassis& chassis) {
-  note(motion_.take(chassis));
+void RelativeMapPipeline::set_chassis(const Chassis& chassis, std::optional<Time> received) {
+  note(motion_.take(chassis, config_->max_age, received));
 }
 
 void RelativeMapPipeline::reset() {
@@ -50,7 +54,13 @@ void RelativeMapPipeline::reset() {
   forget_what_was_seen();
 }
 
+void RelativeMapPipeline::clock_went_back() {
+  reset();
+  last_stamp_ = Time();
+}
+
 void RelativeMapPipeline::forget_what_was_seen() {
+  marker_order_.reset();
   markers_.reset();
   estimated_.reset();
   fixed_weight_.reset();
@@ -65,6 +75,8 @@ void RelativeMapPipeline::note(const std::vector<std::string>& remarks) {
 }
 
 RelativeMap RelativeMapPipeline::tick(Time now) {
+  if (last_tick_ && goes_back(*last_tick_, now)) clock_went_back();
+  last_tick_ = now;
   remarks_ = std::exchange(noted_, {});
   std::variant<RelativeMap, Status> built = build(now);
   if (auto* status = std::get_if<Status>(&built)) {
@@ -75,12 +87,13 @@ RelativeMap RelativeMapPipeline::tick(Time now) {
   }
   RelativeMap& map = std::get<RelativeMap>(built);
   map.sequence_num = ++sequence_num_;
+  last_stamp_ = map.stamp;
   return std::move(map);
 }
 
 RelativeMap RelativeMapPipeline::empty_map(Status status, Time stamp) {
   RelativeMap map;
-  map.stamp = stamp;
+  map.stamp = last_stamp_ = std::max(stamp, last_stamp_);
   map.frame_id = config_->base_frame;
   map.status = std::move(status);
   map.sequence_num = ++sequence_num_;
@@ -93,8 +106,8 @@ std::variant<RelativeMap, Status> RelativeMapPipeline::build(Time now) {
   if (markers_ && to_seconds(now - markers_->stamp) <= config_->max_age.lane_markers)
     add_new(remarks_, markers_->remarks);
 
-  auto found = method().find_lanes(
-      {now, std::get<VehicleState>(localized), motion_, *config_, lines_, current_id_, remarks_});
+  auto found = method().find_lanes({now, last_stamp_, std::get<VehicleState>(localized), motion_, *config_,
+                                    lines_, current_id_, remarks_});
   if (auto* nothing = std::get_if<Status>(&found)) {
     for (const std::string& remark : remarks_) nothing->message += "; " + remark;
     if (!markers_) nothing->message += "; lane markers: none received yet";

@@ -12,8 +12,8 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr Time kTickPeriod = std::chrono::milliseconds(100);
-constexpr Time kSettleTime = std::chrono::seconds(1);
+constexpr Duration kTickPeriod = std::chrono::milliseconds(100);
+constexpr Duration kSettleTime = std::chrono::seconds(1);
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -31,11 +31,11 @@ class PipelineMapMaker : public MapMaker {
 
   void deliver(const Delivery& delivery) override {
     if (const auto* localization = std::get_if<Localization>(&delivery.message)) {
-      pipeline_.set_localization(*localization);
+      pipeline_.set_localization(*localization, std::nullopt, delivery.time);
     } else if (const auto* chassis = std::get_if<Chassis>(&delivery.message)) {
-      pipeline_.set_chassis(*chassis);
+      pipeline_.set_chassis(*chassis, delivery.time);
     } else if (deliver_markers_) {
-      pipeline_.set_lane_markers(std::get<LaneMarkers>(delivery.message));
+      pipeline_.set_lane_markers(std::get<LaneMarkers>(delivery.message), delivery.time);
     }
   }
 

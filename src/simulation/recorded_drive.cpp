@@ -11,13 +11,13 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr Time kStart = std::chrono::seconds(1000);
-constexpr Time kTruthPeriod = std::chrono::milliseconds(10);
+constexpr Time kStart(std::chrono::seconds(1000));
+constexpr Duration kTruthPeriod = std::chrono::milliseconds(10);
 
 /// Something that is done again and again.
 struct Beat {
-  Time period;
-  Time due;
+  Duration period;
+  Duration due;
 };
 
 Beat random_beat(std::mt19937_64& engine, const TransmissionParam& param) {
@@ -83,7 +83,7 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
   drive.end = kStart + from_seconds(scene.duration);
 
   std::mt19937_64 engine = random_engine(scene.vehicle.seed, 70);
-  Beat truth{kTruthPeriod, Time::zero()};
+  Beat truth{kTruthPeriod, Duration::zero()};
   const SensorTransmission& sensors = scene.transmission;
   Beat localization = random_beat(engine, sensors.localization),
        chassis = random_beat(engine, sensors.chassis), markers = random_beat(engine, sensors.markers);
@@ -93,7 +93,7 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
   const auto deliver = [&](const auto& message, const std::vector<Time>& arrivals) {
     for (const Time arrival : arrivals) drive.deliveries.push_back({arrival, message});
   };
-  const Time duration = from_seconds(scene.duration);
+  const Duration duration = from_seconds(scene.duration);
   Spoiler spoiler(scene);
   Time last_marker_message = kStart;
   for (;;) {

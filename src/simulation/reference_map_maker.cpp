@@ -17,7 +17,7 @@ constexpr double kTurn = 0.5;                     // [rad] up to which a curve i
 constexpr double kMinQuality = 0.5;
 constexpr double kPatience = 2.0;  // [s] that paint is left out before the filter doubts itself
 constexpr double kHold = 4.0;      // [s] that markers' own shape is followed without them
-constexpr Time kPoseMemory = std::chrono::seconds(2);
+constexpr Duration kPoseMemory = std::chrono::seconds(2);
 
 bool usable(const LaneMarker& marker) {
   return marker.quality >= kMinQuality && marker.view_range > marker.longitude_start + 1.0;
@@ -193,7 +193,7 @@ bool ReferenceMapMaker::follow_line(const LaneMarkers& markers, const Pose2& pos
 void ReferenceMapMaker::see(const LaneMarkers& markers) {
   const std::optional<Pose2> pose = pose_at(markers.stamp);
   if (!pose) return;
-  if (last_image_ > Time::zero()) filter_.predict(to_seconds(markers.stamp - last_image_));
+  if (last_image_ > Time()) filter_.predict(to_seconds(markers.stamp - last_image_));
   last_image_ = markers.stamp;
   const bool used = lines_.empty() ? follow_paint(markers, *pose) : follow_line(markers, *pose);
   if (used) {

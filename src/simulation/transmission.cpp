@@ -8,7 +8,7 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr Time kAgain = std::chrono::milliseconds(5);  // from a message to its repetition
+constexpr Duration kAgain = std::chrono::milliseconds(5);  // from a message to its repetition
 
 }  // namespace
 

@@ -142,7 +142,7 @@ void VehicleSimulation::advance(double dt) {
 
 void VehicleSimulation::step(double dt) {
   const int steps = static_cast<int>(std::ceil(dt / kMaxStep));
-  const Time start = time_;
+  const Duration start = time_;
   for (int i = 1; i <= steps; ++i) {
     advance(dt / steps);
     time_ = start + from_seconds(dt * i / steps);
@@ -153,7 +153,7 @@ Localization VehicleSimulation::measure_localization() {
   const double seconds = to_seconds(time_);
   const Pose2 truth = pose_drift_ ? pose_drift_->at(map_from_base(), seconds) : map_from_base();
   Localization measured;
-  measured.stamp = time_;
+  measured.stamp = Time(time_);
   const Point2 bias = localization_errors_.position_bias(seconds);
   const double error_x = localization_noise_.draw(config_.noise.localization_position);
   const double error_y = localization_noise_.draw(config_.noise.localization_position);
@@ -173,7 +173,7 @@ Localization VehicleSimulation::measure_localization() {
 
 Chassis VehicleSimulation::measure_chassis() {
   Chassis measured;
-  measured.stamp = time_;
+  measured.stamp = Time(time_);
   // Wheel sensors tell no direction, the gear does: noise does not make a standing vehicle reverse.
   const double speed = std::abs(speed_scale_ * speed_ + chassis_noise_.draw(config_.noise.chassis_speed));
   measured.speed = speed_ < 0.0 ? -speed : speed;
@@ -202,7 +202,7 @@ LaneMarker VehicleSimulation::measure_marker(const PaintLine& line, double view_
 
 LaneMarkers VehicleSimulation::measure_lane_markers() {
   LaneMarkers measured;
-  measured.stamp = time_;
+  measured.stamp = Time(time_);
   const double seconds = to_seconds(time_);
   const double view_range = marker_errors_.view_range(config_.paint.view_range, seconds);
   const std::vector<PaintLine>& lines = config_.paint.lines;

@@ -17,7 +17,7 @@ std::size_t points_of(const RelativeMap& map) {
 /// by itself.
 void time_ticks(benchmark::State& state, const Scene& scene, const std::string& method = "") {
   RelativeMapPipeline pipeline = method.empty() ? pipeline_of(scene) : pipeline_of(scene, method);
-  Time now = from_seconds(1.0);
+  Time now = at_seconds(1.0);
   RelativeMap map;
   for (auto _ : state) {
     if (!method.empty()) see(pipeline, now);
@@ -31,7 +31,7 @@ void time_ticks(benchmark::State& state, const Scene& scene, const std::string& 
 
 void time_check(benchmark::State& state, const Scene& scene) {
   RelativeMapPipeline pipeline = pipeline_of(scene);
-  Time now = from_seconds(1.0);
+  Time now = at_seconds(1.0);
   const RelativeMap map = tick(pipeline, scene, now);
   if (!check_map(map, {}).empty()) state.SkipWithError("the map breaks the contract");
   for (auto _ : state) benchmark::DoNotOptimize(check_map(map, {}));

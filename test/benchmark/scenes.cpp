@@ -103,7 +103,7 @@ RelativeMapPipeline pipeline_of(const Scene& scene, const std::string& method) {
   RelativeMapPipeline pipeline(config);
   pipeline.set_navigation_lines(prepare_navigation_lines(scene.navigation, {}));
   Chassis chassis;
-  chassis.stamp = from_seconds(1.0);
+  chassis.stamp = at_seconds(1.0);
   chassis.speed = 10.0;
   pipeline.set_chassis(chassis);
   return pipeline;

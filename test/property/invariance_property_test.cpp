@@ -44,7 +44,7 @@ RelativeMap map_of(const Inputs& inputs) {
   config.navigation_lane.max_lane_half_width = inputs.max_half_width;
   RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>(config));
   pipeline.set_navigation_lines(prepare_navigation_lines({"map", inputs.lines}, IntakeParam()));
-  const Time now = from_seconds(50.0);
+  const Time now = at_seconds(50.0);
   pipeline.set_localization(localization_at(inputs.vehicle, now));
   if (inputs.markers) {
     pipeline.set_lane_markers(*inputs.markers);
@@ -77,7 +77,7 @@ Inputs any_inputs() {
   inputs.vehicle = Pose2(beside.position, normalize_angle(beside.theta + number(-0.1, 0.1)));
   if (*rc::gen::arbitrary<bool>()) {
     inputs.markers = lane_about(any_center(), number(1.5, 2.0), number(10.0, 80.0));
-    inputs.markers->stamp = from_seconds(50.0);
+    inputs.markers->stamp = at_seconds(50.0);
   }
   inputs.weight = number(0.0, 1.0);
   return inputs;
@@ -224,7 +224,7 @@ RC_GTEST_PROP(Invariance, WeightOneGivesTheMarkersAloneInsideTheirViewRange, ())
   inputs.markers.reset();
   const Cubic center = any_center_near(current_lane(map_of(inputs)));
   inputs.markers = lane_about(center);
-  inputs.markers->stamp = from_seconds(50.0);
+  inputs.markers->stamp = at_seconds(50.0);
   inputs.method = "fixed_weight";
   inputs.weight = 1.0;
   const RelativeMap map = map_of(inputs);

@@ -60,7 +60,7 @@ class RandomDrive {
   std::vector<double> offsets_;  ///< [m] of the lines from the road
   double s_ = 0.0, l_ = 0.0, turn_ = 0.0, speed_ = 10.0;
   Pose2 pose_;
-  Time now_ = std::chrono::seconds(100);
+  Time now_ = at_seconds(100.0);
 };
 
 }  // namespace relative_map::core::test

@@ -50,7 +50,7 @@ class UglyDrive {
   IntakeParam intake_;
   Pose2 pose_;
   double speed_ = 10.0;
-  Time now_ = std::chrono::seconds(100000);
+  Time now_ = at_seconds(100000.0);
 };
 
 }  // namespace relative_map::core::test

@@ -28,7 +28,7 @@ void drive_along(std::size_t driven, Look look) {
   RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>());
   pipeline.set_navigation_lines(prepare_navigation_lines(info, {}));
   const std::vector<LinePoint>& line = info.lines[driven].points;
-  Time now = from_seconds(1000.0);
+  Time now = at_seconds(1000.0);
   double next_s = 0.0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i].s < next_s && i + 1 < line.size()) continue;

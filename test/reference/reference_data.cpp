@@ -54,7 +54,7 @@ Eigen::Vector3d vector_of(const json& numbers) {
 
 Localization localization_of(const json& message) {
   Localization localization;
-  localization.stamp = from_seconds(message["t"]);
+  localization.stamp = at_seconds(message["t"]);
   localization.position = vector_of(message["position"]);
   localization.heading = message["heading"];
   // Its orientation is Apollo's RFU, whose yaw is heading - 90 degrees.
@@ -102,7 +102,7 @@ RelativeMap ScenarioRun::next() {
   const json& frame = scenario_["frames"].at(frame_++);
   if (frame.contains("chassis")) {
     Chassis chassis;
-    chassis.stamp = from_seconds(frame["chassis"]["t"]);
+    chassis.stamp = at_seconds(frame["chassis"]["t"]);
     chassis.speed = frame["chassis"]["speed_mps"];
     pipeline_.set_chassis(chassis);
   }

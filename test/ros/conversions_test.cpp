@@ -103,7 +103,7 @@ TEST(Conversions, AStampIsExact) {
   const ros::Time stamp(1700000000, 123456789);
   EXPECT_EQ(to_ros(to_core(stamp)), stamp);
   EXPECT_EQ(to_core(stamp).count(), 1700000000123456789);
-  EXPECT_TRUE(to_ros(core::Time(-1)).isZero());
+  EXPECT_TRUE(to_ros(core::Time(core::Duration(-1))).isZero());
 }
 
 TEST(Conversions, AStampThatWasNotFilledIsTheTimeOfReceipt) {
@@ -181,6 +181,37 @@ TEST(Conversions, NavigationLinesGoThereAndBack) {
   EXPECT_EQ((std::vector<double>{point.x, point.y, point.z, point.theta, point.kappa, point.dkappa, point.s}),
             (std::vector<double>{1.0, 2.0, 3.0, 0.4, 0.05, 0.006, 7.0}));
   EXPECT_TRUE(back.lines[1].points.empty());
+}
+
+TEST(Conversions, ReadWhatTheLocalizationSaysOfItself) {
+  LocalizationEstimate message;
+  const auto read = [&] { return to_core(message, OrientationConvention::kFlu, ros::Time(1.0)); };
+  EXPECT_TRUE(std::isnan(read().position_stddev)) << "0 is: not given";
+  EXPECT_TRUE(std::isnan(read().heading_stddev));
+  EXPECT_FALSE(read().failure);
+  message.uncertainty.position_std_dev.x = std::numeric_limits<double>::quiet_NaN();
+  message.uncertainty.position_std_dev.y = 0.4;
+  message.uncertainty.orientation_std_dev.z = 0.02;
+  EXPECT_EQ(read().position_stddev, 0.4);
+  EXPECT_EQ(read().heading_stddev, 0.02);
+  message.status.code = LocalizationStatus::ERROR;
+  message.status.message = "no fix";
+  EXPECT_EQ(read().failure, std::string("no fix"));
+  message.status.code = LocalizationStatus::WARNING;
+  EXPECT_FALSE(read().failure);
+}
+
+TEST(Conversions, KnowTheSignOfASpeedByTheGear) {
+  Chassis message;
+  message.speed_mps = 3.0;
+  for (const uint8_t gear : {Chassis::GEAR_DRIVE, Chassis::GEAR_LOW, Chassis::GEAR_REVERSE}) {
+    message.gear_location = gear;
+    EXPECT_TRUE(to_core(message, ros::Time(1.0)).sign_known);
+  }
+  for (const uint8_t gear : {Chassis::GEAR_NEUTRAL, Chassis::GEAR_NONE, Chassis::GEAR_INVALID}) {
+    message.gear_location = gear;
+    EXPECT_FALSE(to_core(message, ros::Time(1.0)).sign_known);
+  }
 }
 
 }  // namespace

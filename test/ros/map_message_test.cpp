@@ -170,7 +170,7 @@ TEST(MapMessage, AMapSaysEverythingInApollosTerms) {
 
 TEST(MapMessage, AnEmptyMapIsAMessageWithoutLanes) {
   core::RelativeMap map;
-  map.stamp = core::from_seconds(100.0);
+  map.stamp = core::at_seconds(100.0);
   map.frame_id = "base_link";
   map.status = {core::StatusCode::kOffRoute, "far away"};
   const MapMsgPtr message = to_message(map);

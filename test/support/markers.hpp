@@ -19,7 +19,7 @@ inline LaneMarker marker(const Cubic& cubic, double view_range = 50.0, double qu
 /// Both sides of a lane about `center`, `half_width` [m] from it along y.
 inline LaneMarkers lane_about(const Cubic& center, double half_width = 1.75, double view_range = 50.0) {
   LaneMarkers markers;
-  markers.stamp = from_seconds(1.0);
+  markers.stamp = at_seconds(1.0);
   Cubic left = center, right = center;
   left.c0 += half_width;
   right.c0 -= half_width;

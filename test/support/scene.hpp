@@ -44,10 +44,10 @@ class Scene {
     Chassis chassis;
     chassis.stamp = now_;
     chassis.speed = speed;
-    pipeline_.set_chassis(chassis);
+    pipeline_.set_chassis(chassis, now_);
     Localization localization = localization_at(pose, now_, speed);
     localization.angular_velocity_body.z() = yaw_rate;
-    pipeline_.set_localization(localization);
+    pipeline_.set_localization(localization, std::nullopt, now_);
     return tick();
   }
   /// Seen at the pose and time of the next call of `at`.
@@ -73,12 +73,12 @@ class Scene {
                        [&](const std::string& remark) { return remark.find(words) != std::string::npos; });
   }
 
-  const Time step = std::chrono::milliseconds(100);
+  const Duration step = std::chrono::milliseconds(100);
 
  private:
   PipelineConfig config_;
   RelativeMapPipeline pipeline_;
-  Time now_ = std::chrono::seconds(1000);
+  Time now_ = at_seconds(1000.0);
   std::optional<std::uint32_t> sequence_num_;
 };
 

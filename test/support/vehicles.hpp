@@ -16,7 +16,7 @@ inline NavigationLine prepared(const Polyline& points, bool stitch_closed_lines 
 
 inline VehicleState vehicle_at(const Pose2& pose, double seconds = 1.0, double speed = 10.0) {
   VehicleState vehicle;
-  vehicle.stamp = from_seconds(seconds);
+  vehicle.stamp = at_seconds(seconds);
   vehicle.map_from_base = pose;
   vehicle.speed = speed;
   return vehicle;

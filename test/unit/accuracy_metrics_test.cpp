@@ -14,7 +14,7 @@ namespace {
 
 using test::kNaN;
 
-constexpr Time kStart = std::chrono::seconds(1000);
+constexpr Time kStart(std::chrono::seconds(1000));
 constexpr double kSpeed = 10.0;  // [m/s]
 
 /// Lanes 3.5 m wide on a straight along x, and a vehicle that drives along it at offset l [m].

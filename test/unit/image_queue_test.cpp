@@ -18,13 +18,13 @@ class Drive {
   std::vector<ImageQueue::Image> tick(LaneMarkers markers, double age = 0.0) {
     seconds_ += 0.1;
     queue.move(test::vehicle_at(Pose2(Point2(speed * seconds_, 0.0), 0.0), seconds_, speed));
-    markers.stamp = from_seconds(seconds_ - age);
+    markers.stamp = at_seconds(seconds_ - age);
     queue.add(markers);
     return take();
   }
   std::vector<ImageQueue::Image> take() {
     remarks.clear();
-    return queue.take(from_seconds(seconds_), from_seconds(seconds_), PipelineConfig(), remarks);
+    return queue.take(at_seconds(seconds_), at_seconds(seconds_), PipelineConfig(), remarks);
   }
 
   ImageQueue queue;
@@ -47,12 +47,12 @@ TEST(ImageQueue, KeepsTheNewestWhereNobodyTakesThem) {
   for (int i = 0; i < 10; ++i) drive.tick(test::lane_about({0.2}));
   for (int i = 0; i < 80; ++i) {
     LaneMarkers markers = test::lane_about({0.001 * i});
-    markers.stamp = from_seconds(101.0 - 0.001 * (80 - i));
+    markers.stamp = at_seconds(101.0 - 0.001 * (80 - i));
     drive.queue.add(markers);
   }
   const auto images = drive.take();
   ASSERT_EQ(images.size(), 50u);
-  EXPECT_EQ(images.back().stamp, from_seconds(100.999));
+  EXPECT_EQ(images.back().stamp, at_seconds(100.999));
 }
 
 TEST(ImageQueue, KnowsPaintThatStaysTheSameWhereItCannot) {

@@ -54,12 +54,43 @@ TEST(LocalizationCheck, DoesWithoutAnOrientationThatGivesNoDirectionAndSaysSo) {
   EXPECT_EQ(checked.input.heading, 1.0);
 }
 
-TEST(LocalizationCheck, TakesAVelocityOfExactlyZeroAsNotGiven) {
+TEST(LocalizationCheck, TakesAVelocityOfExactlyZeroForAValue) {
   Localization localization = facing(1.0, 1.0);
   localization.linear_velocity.setZero();
-  EXPECT_TRUE(check_localization(localization).input.linear_velocity.array().isNaN().all()) << "poses tell";
-  localization.linear_velocity.x() = 1e-9;
   EXPECT_EQ(check_localization(localization).input.linear_velocity, localization.linear_velocity);
+}
+
+TEST(LocalizationCheck, RefusesAHeadingThatIsNoAngleInRadians) {
+  for (const double heading : {90.0, -7.0, 359.0}) {
+    auto checked = check_localization(facing(heading, 1.0));
+    EXPECT_FALSE(checked.refusal) << "the orientation tells";
+    EXPECT_TRUE(std::isnan(checked.input.heading));
+    EXPECT_THAT(checked.remarks, ElementsAre(HasSubstr("is it in degrees?")));
+    Localization alone = facing(heading, 0.0);
+    alone.map_from_body.coeffs().setZero();
+    checked = check_localization(alone);
+    ASSERT_TRUE(checked.refusal);
+    EXPECT_EQ(checked.refusal->code, StatusCode::kInvalidLocalization);
+    EXPECT_THAT(checked.refusal->message, HasSubstr("is it in degrees?"));
+  }
+  EXPECT_FALSE(check_localization(facing(2.0 * kPi, 0.001)).refusal) << "a full turn is an angle";
+}
+
+TEST(LocalizationCheck, RefusesAnIdentityBesideNoHeading) {
+  const auto checked = check_localization(facing(kNaN, 0.0));
+  ASSERT_TRUE(checked.refusal);
+  EXPECT_THAT(checked.refusal->message, HasSubstr("never filled"));
+  EXPECT_FALSE(check_localization(facing(kNaN, 1e-9)).refusal) << "as one that looks east, nearly";
+  EXPECT_FALSE(check_localization(facing(0.0, 0.0)).refusal) << "as one that looks east";
+}
+
+TEST(LocalizationCheck, RefusesWhatTheLocalizationItselfCallsAFailure) {
+  Localization localization = facing(1.0, 1.0);
+  localization.failure = "no fix";
+  const auto checked = check_localization(localization);
+  ASSERT_TRUE(checked.refusal);
+  EXPECT_EQ(checked.refusal->code, StatusCode::kInvalidLocalization);
+  EXPECT_THAT(checked.refusal->message, HasSubstr("status ERROR): no fix"));
 }
 
 TEST(LocalizationCheck, NormalisesAndSaysSo) {

@@ -135,7 +135,7 @@ TEST(Manoeuvres, ErrorsArePartOfWhatTheSensorsSay) {
   const double scale = vehicle.measure_chassis().speed / vehicle.speed();
   EXPECT_NE(scale, 1.0);
   EXPECT_NEAR(scale, 1.0, 0.01);
-  EXPECT_EQ(vehicle.marker_latency(), Time::zero());
+  EXPECT_EQ(vehicle.marker_latency(), Duration::zero());
   vehicle.measure_lane_markers();
   EXPECT_EQ(vehicle.marker_latency(), std::chrono::milliseconds(100));
 }

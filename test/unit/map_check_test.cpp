@@ -29,9 +29,9 @@ RelativeMap good_map() {
       {"map", {recording(left, "left", 1), recording(middle, "middle", 0), recording(right, "right", 2)}},
       {}));
   Localization localization;
-  localization.stamp = from_seconds(100.0);
+  localization.stamp = at_seconds(100.0);
   pipeline.set_localization(localization);
-  return pipeline.tick(from_seconds(100.0));
+  return pipeline.tick(at_seconds(100.0));
 }
 
 std::vector<std::string> broken_rows(const RelativeMap& map) {
@@ -49,7 +49,7 @@ TEST(MapCheck, AGoodMapBreaksNoRow) {
 
 TEST(MapCheck, AnEmptyMapWithAReasonBreaksNoRow) {
   RelativeMapPipeline pipeline(std::make_shared<PipelineConfig>());
-  EXPECT_THAT(broken_rows(pipeline.tick(from_seconds(1.0))), IsEmpty());
+  EXPECT_THAT(broken_rows(pipeline.tick(at_seconds(1.0))), IsEmpty());
 }
 
 struct Breakage {
@@ -72,7 +72,7 @@ TEST_P(MapCheckRow, IsTheOnlyOneBroken) {
 
 const Breakage kBreakages[] = {
     {"header", "another frame", [](RelativeMap& map) { map.frame_id = "map"; }},
-    {"header", "no stamp", [](RelativeMap& map) { map.stamp = Time::zero(); }},
+    {"header", "no stamp", [](RelativeMap& map) { map.stamp = Time(); }},
     {"header", "a number left out", [](RelativeMap& map) { map.sequence_num = 2; }},
     {"emptiness", "lanes in spite of a fault",
      [](RelativeMap& map) { map.status.code = StatusCode::kOffRoute; }},

@@ -24,7 +24,7 @@ struct Circle {
     for (const double end = t + seconds; t < end; t += period) {
       const Pose2 truth = test::along_arc(Pose2(), kappa, 10.0 * t);
       VehicleState state;
-      state.stamp = from_seconds(100.0 + t);
+      state.stamp = at_seconds(100.0 + t);
       state.map_from_base = Pose2(truth.position() + jumped, truth.heading());
       state.speed = speed;
       state.yaw_rate = yaw_rate;
@@ -97,11 +97,25 @@ TEST(OdometryCheck, AVehicleAtRestTellsNothing) {
   OdometryCheck check;
   VehicleState state;
   for (int i = 0; i < 500; ++i) {
-    state.stamp = from_seconds(0.05 * i);
+    state.stamp = at_seconds(0.05 * i);
     state.map_from_base = Pose2(Point2(i % 2 == 0 ? 0.2 : -0.2, 0.1), 0.01 * (i % 3));  // noise
     check.add(state);
   }
   EXPECT_TRUE(check.trusts_speed() && check.trusts_yaw_rate());
+}
+
+TEST(OdometryCheck, DriftAndJumpsAtRestAreNoVerdictAgainstASpeedOfZero) {
+  for (const double drift : {0.3, 0.7, 1.1}) {  // [m/s] ahead
+    OdometryCheck check;
+    for (int i = 0; i < 1200; ++i) {
+      VehicleState state;
+      state.stamp = at_seconds(0.05 * i);
+      state.map_from_base =
+          Pose2(Point2(0.05 * i * drift + (i / 60) * 3.0, 0.0), 0.0);  // put on by 3 m in 3 s
+      check.add(state);
+    }
+    EXPECT_TRUE(check.trusts_speed()) << drift;
+  }
 }
 
 }  // namespace

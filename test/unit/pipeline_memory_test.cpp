@@ -38,7 +38,7 @@ double length_with(const std::optional<Chassis>& chassis, bool reset = false) {
   Scene scene({}, markers_alone());
   if (chassis) {
     Chassis relative = *chassis;
-    relative.stamp += scene.now() + scene.step;
+    relative.stamp += (scene.now() + scene.step).time_since_epoch();
     scene.pipeline().set_chassis(relative);
   }
   if (reset) scene.pipeline().reset();
@@ -52,7 +52,7 @@ double length_with(const std::optional<Chassis>& chassis, bool reset = false) {
 }
 
 TEST(PipelineMemory, AChassisCountsWhileItIsOfNow) {
-  const auto chassis = [](double age) { return Chassis{from_seconds(-age), 30.0}; };
+  const auto chassis = [](double age) { return Chassis{at_seconds(-age), 30.0}; };
   EXPECT_NEAR(length_with(std::nullopt), 162.0, 2.0) << "20 m/s of localization";
   EXPECT_NEAR(length_with(chassis(0.0)), 242.0, 2.0) << "30 m/s of the chassis";
   EXPECT_NEAR(length_with(chassis(0.9)), 242.0, 2.0);
@@ -64,13 +64,15 @@ TEST(PipelineMemory, AChassisCountsWhileItIsOfNow) {
 TEST(PipelineMemory, ABadInputIsToldThoughAGoodOneReplacedIt) {
   Scene scene(test::three_straight_lines());
   scene.at(kOnTheRoad);
-  scene.pipeline().set_chassis({scene.now(), 1000.0});
-  Localization localization = localization_at(kOnTheRoad, scene.now() + from_seconds(0.01));
+  const Time between = scene.now() + from_seconds(0.01);
+  scene.pipeline().set_chassis({between, 1000.0});
+  Localization localization = localization_at(kOnTheRoad, between);
   localization.position.x() = std::numeric_limits<double>::quiet_NaN();
   scene.pipeline().set_localization(localization);
   LaneMarkers markers = lane_about({0.0});
   markers.left.view_range = -5.0;
-  scene.see(markers);
+  markers.stamp = between;
+  scene.pipeline().set_lane_markers(markers);
   scene.see(lane_about({0.0}));
   EXPECT_EQ(scene.at(kOnTheRoad).status.code, StatusCode::kOk);
   for (const char* words :

@@ -72,12 +72,12 @@ TEST(ReferenceMapMaker, IsBetterThanTheLineAlone) {
 
 TEST(ReferenceMapMaker, MakesNoMapOfNothing) {
   ReferenceMapMaker maker({});
-  EXPECT_TRUE(maker.tick(std::chrono::seconds(1)).lanes.empty());
-  maker.deliver({std::chrono::seconds(1), LaneMarkers()});
+  EXPECT_TRUE(maker.tick(at_seconds(1.0)).lanes.empty());
+  maker.deliver({at_seconds(1.0), LaneMarkers()});
   Localization pose;
-  pose.stamp = std::chrono::seconds(1);
-  maker.deliver({std::chrono::seconds(1), pose});
-  EXPECT_TRUE(maker.tick(std::chrono::seconds(1)).lanes.empty());
+  pose.stamp = at_seconds(1.0);
+  maker.deliver({at_seconds(1.0), pose});
+  EXPECT_TRUE(maker.tick(at_seconds(1.0)).lanes.empty());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 TEST(Transmission, ByDefaultAMessageArrivesAtOnceAndOnce) {
   Transmission transmission(TransmissionParam(), 1, 1);
   for (int i = 0; i < 100; ++i) {
-    const Time stamp = milliseconds(20) * i;
+    const Time stamp(milliseconds(20) * i);
     EXPECT_EQ(transmission.arrivals(stamp), std::vector<Time>{stamp});
   }
 }
@@ -25,7 +25,7 @@ TEST(Transmission, SharesAreWhatIsAskedFor) {
   Transmission transmission(param, 1, 1);
   int lost = 0, repeated = 0;
   for (int i = 0; i < 20000; ++i) {
-    const auto arrivals = transmission.arrivals(milliseconds(20) * i);
+    const auto arrivals = transmission.arrivals(Time(milliseconds(20) * i));
     if (arrivals.empty()) ++lost;
     if (arrivals.size() == 2) ++repeated;
   }
@@ -42,7 +42,7 @@ TEST(Transmission, UnsteadyLatencyKeepsTheOrderAndOnlyLateOnesAreOvertaken) {
     Time last{};
     int count = 0;
     for (int i = 0; i < 5000; ++i) {
-      const Time stamp = milliseconds(50) * i, arrival = transmission.arrivals(stamp).front();
+      const Time stamp(milliseconds(50) * i), arrival = transmission.arrivals(stamp).front();
       EXPECT_GE(arrival, stamp + milliseconds(60));
       EXPECT_LE(arrival, stamp + milliseconds(250) + from_seconds(param.late_by));
       if (arrival < last) ++count;

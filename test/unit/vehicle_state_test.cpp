@@ -20,7 +20,7 @@ Eigen::Quaterniond yaw(double angle) {
 
 Localization localization_at(const Pose2& pose, double speed = 10.0) {
   Localization localization;
-  localization.stamp = from_seconds(1.0);
+  localization.stamp = at_seconds(1.0);
   localization.position << pose.position(), 3.0;
   localization.heading = pose.heading();
   localization.map_from_body = yaw(pose.heading());
@@ -50,7 +50,7 @@ TEST(VehicleState, IsThePlaneViewOfThePose) {
   Localization localization = localization_at(Pose2(Point2(10.0, 20.0), 0.5));
   localization.angular_velocity_body.z() = 0.2;
   const VehicleState state = state_of(localization);
-  EXPECT_EQ(state.stamp, from_seconds(1.0));
+  EXPECT_EQ(state.stamp, at_seconds(1.0));
   EXPECT_EQ(state.map_from_base.position(), Point2(10.0, 20.0));
   EXPECT_EQ(state.map_from_base.heading(), 0.5);
   EXPECT_NEAR(state.speed, 10.0, 1e-12);
@@ -196,7 +196,7 @@ TEST(Jumps, AreWaysThatNoSpeedExplains) {
   const auto after = [](double way, double seconds) {
     VehicleState before, now;
     before.speed = now.speed = 10.0;
-    now.stamp = from_seconds(seconds);
+    now.stamp = at_seconds(seconds);
     now.map_from_base = Pose2(Point2(way, 0.0), 0.0);
     return has_jumped(before, now);
   };
@@ -204,6 +204,18 @@ TEST(Jumps, AreWaysThatNoSpeedExplains) {
   EXPECT_TRUE(after(5.1, 0.0));
   EXPECT_FALSE(after(19.0, 1.0));
   EXPECT_TRUE(after(21.0, 1.0));
+  EXPECT_TRUE(after(kNaN, 1.0)) << "no place that can be driven to";
+}
+
+TEST(VehicleState, KeepsWhatLocalizationSaysOfItsNoise) {
+  Localization localization;
+  localization.heading = 1.0;
+  EXPECT_TRUE(std::isnan(std::get<VehicleState>(make_vehicle_state(localization, {})).position_stddev));
+  localization.position_stddev = 0.7;
+  localization.heading_stddev = 0.02;
+  const auto state = std::get<VehicleState>(make_vehicle_state(localization, {}));
+  EXPECT_EQ(state.position_stddev, 0.7);
+  EXPECT_EQ(state.heading_stddev, 0.02);
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ TEST(Worlds, AClosedLoopPutsSlamRight) {
 TEST(Worlds, CamerasFailAsTheirRowsSay) {
   double longest = 0.0, since = -1.0;
   for (const auto& [time, image] : messages_of<LaneMarkers>(drive_in("camera.blind"))) {
-    const double now = to_seconds(image.stamp);
+    const double now = seconds_since_epoch(image.stamp);
     if (!blind(image)) since = -1.0;
     if (blind(image) && since < 0.0) since = now;
     if (blind(image)) longest = std::max(longest, now - since);

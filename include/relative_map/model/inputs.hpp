@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,7 +66,8 @@ struct LaneMarkers {
 
 struct Chassis {
   Time stamp{};
-  double speed = 0.0;  ///< [m/s] signed: negative in reverse gear
+  double speed = 0.0;      ///< [m/s] signed: negative in reverse gear
+  bool sign_known = true;  ///< false: the gear says neither forwards nor back
 };
 
 /// The pose of a link of the vehicle, ENU map frame; NaN: not given.
@@ -75,6 +78,10 @@ struct Localization {
   double heading = 0.0;                                               ///< [rad] ccw from east
   Eigen::Vector3d linear_velocity = Eigen::Vector3d::Zero();          ///< [m/s] ENU
   Eigen::Vector3d angular_velocity_body = Eigen::Vector3d::Zero();    ///< [rad/s] FLU
+  // What the localization says of itself. Standard deviations; NaN: not given.
+  double position_stddev = std::numeric_limits<double>::quiet_NaN();  ///< [m] of x and of y, the greater one
+  double heading_stddev = std::numeric_limits<double>::quiet_NaN();   ///< [rad]
+  std::optional<std::string> failure;  ///< that it has none to give, in its words; none: it has not failed
 };
 
 }  // namespace relative_map::core

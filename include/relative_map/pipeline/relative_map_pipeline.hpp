@@ -27,14 +27,19 @@ class RelativeMapPipeline {
   void set_navigation_lines(std::shared_ptr<const NavigationLines> lines) {
     lines_.set_lines(std::move(lines));
   }
+  // `received`: when a message came, by the clock that `tick` is told; none: not known, and no stamp is of
+  // the future. StampOrder says which messages are dropped by their stamps, and when time has gone back.
   /// Of the link whose place in the vehicle `link_from_base` gives; none: of the body frame itself.
-  /// A message a little older than the newest one is late and dropped: false; one much older sets time back.
+  /// False: it was dropped by its stamp.
   bool set_localization(const Localization& link,
-                        const std::optional<Eigen::Isometry3d>& link_from_base = std::nullopt);
-  void set_chassis(const Chassis& chassis);
-  void set_lane_markers(const LaneMarkers& markers);
-  /// Forgets all but configuration and lines, as after a jump of the clock.
+                        const std::optional<Eigen::Isometry3d>& link_from_base = std::nullopt,
+                        std::optional<Time> received = std::nullopt);
+  void set_chassis(const Chassis& chassis, std::optional<Time> received = std::nullopt);
+  void set_lane_markers(const LaneMarkers& markers, std::optional<Time> received = std::nullopt);
+  /// Forgets all but configuration and lines.
   void reset();
+  /// Likewise, and the next map's stamp may be older than the last one's.
+  void clock_went_back();
 
   /// The stamp of the pose that the next map would be for; none: no pose yet.
   std::optional<Time> pose_stamp() const { return motion_.stamp(); }
@@ -67,6 +72,9 @@ class RelativeMapPipeline {
   std::optional<NewestMarkers> markers_;
   std::string current_id_;  ///< of the last map
   std::uint32_t sequence_num_ = 0;
+  StampOrder marker_order_{"perception/lane_markers"};
+  std::optional<Time> last_tick_;
+  Time last_stamp_{};  ///< of a map
   std::vector<std::string> remarks_;
   std::vector<std::string> noted_;  ///< on inputs since the last tick, which a newer one may have replaced
 };

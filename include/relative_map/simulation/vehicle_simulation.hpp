@@ -90,7 +90,7 @@ class VehicleSimulation {
   void restart();
 
   // The truth.
-  Time time() const { return time_; }  ///< since construction
+  Duration time() const { return time_; }  ///< since construction
   Pose2 map_from_base() const { return {path_.origin + pose_.position(), pose_.heading()}; }
   double speed() const { return speed_; }        ///< [m/s] negative: backwards
   double yaw_rate() const { return yaw_rate_; }  ///< [rad/s]
@@ -105,7 +105,7 @@ class VehicleSimulation {
   /// the marker has quality 0. Left and right is the nearest paint on either side.
   LaneMarkers measure_lane_markers();
   /// From the image that was measured last to its message.
-  Time marker_latency() const { return marker_latency_; }
+  Duration marker_latency() const { return marker_latency_; }
 
  private:
   void advance(double dt);
@@ -123,8 +123,8 @@ class VehicleSimulation {
   double speed_scale_;  ///< [-] that the chassis measures with
   std::optional<PoseDrift> pose_drift_;
 
-  Time time_{};
-  Time marker_latency_{};
+  Duration time_{};
+  Duration marker_latency_{};
   double s_ = 0.0;             ///< [m]
   double driven_ = 0.0;        ///< [m] along the line, laps included
   std::size_t vertex_ = 0;     ///< of the path, at or before s_

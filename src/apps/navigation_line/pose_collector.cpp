@@ -81,7 +81,7 @@ bool PoseCollector::note_source(const std_msgs::Header& header, const std::strin
     ++of_others_;
     return false;
   }
-  arrival_ = {core::to_seconds(to_core(received)), header.seq};
+  arrival_ = {core::seconds_since_epoch(to_core(received)), header.seq};
   const std::string of_frame = frame.empty() ? "" : "frame '" + frame + "'";
   const std::string name = publisher.empty() ? of_frame : "'" + publisher + "' " + of_frame;
   const auto [source, is_new] = sources_.insert({name, {arrival_.received, arrival_.received}});
@@ -157,7 +157,7 @@ void PoseCollector::add(const sensor_msgs::NavSatFix& message, const ros::Time& 
   antenna_ = link == base_frame_ ? "" : link;
   places_.push_back({message.longitude, message.latitude, message.altitude});
   core::RecordedPose pose;
-  pose.stamp = core::to_seconds(stamp_or(message.header.stamp, received));
+  pose.stamp = core::seconds_since_epoch(stamp_or(message.header.stamp, received));
   pose.heading = kNaN;
   pose.deviation = deviation_of(message);
   fixes_.push_back(pose);
@@ -220,8 +220,8 @@ CarriedPoses PoseCollector::poses(core::GeoReference& reference) const {
       pose = core::carry_to_base(pose, *transforms_(entry.link, base_frame_));
       heading = pose.heading;
     }
-    result.poses.push_back(
-        {core::to_seconds(pose.stamp), pose.position.x(), pose.position.y(), pose.position.z(), heading});
+    result.poses.push_back({core::seconds_since_epoch(pose.stamp), pose.position.x(), pose.position.y(),
+                            pose.position.z(), heading});
     arrivals.push_back(entry.arrival);
   }
   if (geographic()) {

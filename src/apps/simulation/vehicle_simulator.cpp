@@ -21,8 +21,8 @@ namespace relative_map {
 
 namespace {
 
-constexpr core::Time kMaxLag = std::chrono::seconds(2);        // behind the clock that is caught up with
-constexpr core::Time kStandingTime = std::chrono::seconds(2);  // at the end of a line
+constexpr core::Duration kMaxLag = std::chrono::seconds(2);        // behind the clock that is caught up with
+constexpr core::Duration kStandingTime = std::chrono::seconds(2);  // at the end of a line
 constexpr const char* kLocalMapFrame = "local_map";
 
 constexpr const char* kUsage =
@@ -43,8 +43,8 @@ What its sensors and lines may be wrong by is in config/simulator_errors.yaml, a
 that file is loaded. A parameter that is unknown or impossible keeps it from starting. Exit codes: 0 done, 1 not started.
 )";
 
-core::Time period_of(double rate) {
-  return core::Time(std::llround(1e9 / rate));
+core::Duration period_of(double rate) {
+  return core::from_seconds(1.0 / rate);
 }
 
 geometry_msgs::Quaternion to_message(const Eigen::Quaterniond& rotation) {
@@ -125,11 +125,11 @@ VehicleSimulator::Sensor& VehicleSimulator::next_sensor() {
                            [](const Sensor& a, const Sensor& b) { return a.due < b.due; });
 }
 
-void VehicleSimulator::wait_until(core::Time due) {
-  const core::Time lag = to_core(ros::Time::now()) - (start_ + due);
+void VehicleSimulator::wait_until(core::Duration due) {
+  const core::Duration lag = to_core(ros::Time::now()) - (start_ + due);
   if (std::chrono::abs(lag) > kMaxLag) {  // the machine slept, or the clock was set: drive on from here
     start_ += lag;
-  } else if (lag < core::Time::zero()) {
+  } else if (lag < core::Duration::zero()) {
     ros::Time::sleepUntil(to_ros(start_ + due));
   }
 }
@@ -244,13 +244,13 @@ void VehicleSimulator::take_image() {
   for (const core::LaneMarker& marker : markers.next_right) {
     message.next_right_lane_marker.push_back(to_message(marker));
   }
-  core::Time due = vehicle_.time() + vehicle_.marker_latency();
+  core::Duration due = vehicle_.time() + vehicle_.marker_latency();
   if (!late_markers_.empty()) due = std::max(due, late_markers_.back().due);  // none overtakes another
   late_markers_.push_back({due, message});
 }
 
 /// Those that are due by `until`, each at its time.
-void VehicleSimulator::publish_lane_markers(core::Time until) {
+void VehicleSimulator::publish_lane_markers(core::Duration until) {
   for (; !late_markers_.empty() && late_markers_.front().due <= until; late_markers_.pop_front()) {
     wait_until(late_markers_.front().due);
     lane_markers_publisher_.publish(late_markers_.front().message);

@@ -27,12 +27,12 @@ class VehicleSimulator {
 
  private:
   struct Sensor {
-    core::Time period;
+    core::Duration period;
     void (VehicleSimulator::*publish)();
-    core::Time due{};  ///< since the start
+    core::Duration due{};  ///< since the start
   };
   struct LateMarkers {
-    core::Time due;  ///< since the start
+    core::Duration due;  ///< since the start
     LaneMarkers message;
   };
 
@@ -41,19 +41,19 @@ class VehicleSimulator {
   void publish_truth();
   void publish_chassis();
   void take_image();
-  void publish_lane_markers(core::Time until);
+  void publish_lane_markers(core::Duration until);
   void broadcast(const core::Localization& localization);
   Sensor& next_sensor();
-  void wait_until(core::Time due);
+  void wait_until(core::Duration due);
   bool finished();
   ros::Time stamp() const;
 
   SimulatorParameters parameters_;
   core::VehicleSimulation vehicle_;
   std::array<Sensor, 3> sensors_;
-  std::deque<LateMarkers> late_markers_;  ///< by rising time: of images that are still looked at
-  core::Time start_{};                    ///< when the vehicle's time was 0
-  std::optional<core::Time> stopped_at_;  ///< when it came to the end of the line
+  std::deque<LateMarkers> late_markers_;      ///< by rising time: of images that are still looked at
+  core::Time start_{};                        ///< when the vehicle's time was 0
+  std::optional<core::Duration> stopped_at_;  ///< when it came to the end of the line
   ros::Publisher navigation_publisher_, localization_publisher_, chassis_publisher_, lane_markers_publisher_,
       truth_publisher_;
   tf2_ros::TransformBroadcaster broadcaster_;

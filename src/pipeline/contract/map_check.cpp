@@ -13,7 +13,7 @@ namespace {
 Fault check_header(const RelativeMap& map, const MapContext& context) {
   if (map.frame_id != context.frame_id)
     return fault("frame_id is '", map.frame_id, "', not '", context.frame_id, "'");
-  if (map.stamp <= Time::zero()) return fault("the stamp is not set");
+  if (map.stamp <= Time()) return fault("the stamp is not set");
   if (context.previous_sequence_num && map.sequence_num != *context.previous_sequence_num + 1) {
     return fault("sequence_num is ", map.sequence_num, " after ", *context.previous_sequence_num);
   }

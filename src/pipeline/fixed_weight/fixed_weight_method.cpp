@@ -80,10 +80,10 @@ std::optional<MarkerPath> FixedWeightMethod::marker_path(const VehicleState& veh
   const auto age = tick.now - markers_->stamp;
   if (to_seconds(age) > tick.config.max_age.lane_markers)
     return unusable("they are " + seconds_text(age) + " old");
-  const std::optional<Pose2> seen_from = tick.motion.poses().at(markers_->stamp);
+  // By odometry: paint stays where it is when localization jumps.
+  const std::optional<Pose2> seen_from = tick.motion.dead_reckoning().moved(vehicle.stamp, markers_->stamp);
   if (!seen_from) return unusable("no pose is known for their stamp");
-  const Pose2 base_from_sensor =
-      vehicle.map_from_base.to_local(*seen_from).to_parent(markers_->base_from_sensor);
+  const Pose2 base_from_sensor = seen_from->to_parent(markers_->base_from_sensor);
   auto made = make_marker_path(*markers_, base_from_sensor, vehicle.speed, tick.config.map_param,
                                tick.config.navigation_lane);
   if (const auto* why = std::get_if<std::string>(&made)) return unusable(*why);

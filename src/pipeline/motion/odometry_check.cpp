@@ -12,6 +12,9 @@ constexpr int kVerdicts = 2;           // in a row
 constexpr int kSecondsOfWay = 2;       // of a verdict
 constexpr double kWayTolerance = 1.0;  // [m] localization wanders, and ...
 constexpr double kWayShare = 0.15;     // [-] ... tyres wear
+constexpr double kStanding = 0.1;      // [m] in a verdict's time
+constexpr double kMostDrift = 2.5;     // [m] in a verdict's time that localization drifts by at rest, at most
+constexpr double kLeastHalf = 0.3;     // of a way that is driven, in each half of its time
 constexpr int kSecondsOfTurn = 3;      // at most, of a verdict: a turn tells as soon as there is enough of it
 constexpr double kLeastTurn = 0.04;    // [rad] that tells anything
 constexpr double kTurnTolerance = 0.03;  // [rad]
@@ -60,12 +63,22 @@ void OdometryCheck::add(const VehicleState& given) {
 }
 
 void OdometryCheck::look_at_way(const VehicleState& now) {
-  if (way_.seconds < kSecondsOfWay) return;
+  if (way_.seconds < kSecondsOfWay) {
+    way_.middle = now;
+    return;
+  }
   const double heading = way_.begin.map_from_base.heading();
   const double middle = heading + 0.5 * angle_difference(now.map_from_base.heading(), heading);
   const Point2 moved = now.map_from_base.position() - way_.begin.map_from_base.position();
   const double driven = moved.dot(Point2(std::cos(middle), std::sin(middle)));
-  if (std::isfinite(way_.integral) && std::max(std::abs(way_.integral), std::abs(driven)) > kWayTolerance) {
+  // Who is told to stand may drift, or be put elsewhere at once: neither is driving.
+  const bool told_to_stand = std::abs(way_.integral) < kStanding;
+  const Point2 later = now.map_from_base.position() - way_.middle.map_from_base.position();
+  const bool steady =
+      later.norm() > kLeastHalf * moved.norm() && (moved - later).norm() > kLeastHalf * moved.norm();
+  const bool drifts = told_to_stand && (std::abs(driven) < kMostDrift || !steady);
+  if (!drifts && std::isfinite(way_.integral) &&
+      std::max(std::abs(way_.integral), std::abs(driven)) > kWayTolerance) {
     way_.judge(std::abs(way_.integral - driven) <= kWayTolerance + kWayShare * std::abs(driven));
   }
   way_.restart(now);

@@ -9,17 +9,16 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr Time kKept = std::chrono::seconds(3);                     // of poses
-constexpr Time kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
-constexpr Time kSpeedInterval = std::chrono::milliseconds(500);     // over which a speed is measured
-constexpr Time kZeroInterval = std::chrono::seconds(1);             // of yaw rates of exactly 0
-constexpr Time kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
+constexpr Duration kTurnInterval = std::chrono::milliseconds(200);      // over which a turn is measured
+constexpr Duration kSpeedInterval = std::chrono::milliseconds(500);     // over which a speed is measured
+constexpr Duration kZeroInterval = std::chrono::seconds(1);             // of yaw rates of exactly 0
+constexpr Duration kMaxExtrapolation = std::chrono::milliseconds(300);  // beyond the poses that are known
 
 }  // namespace
 
 void PoseBuffer::add(const VehicleState& state) {
   while (!states_.empty() && states_.back().stamp >= state.stamp) states_.pop_back();
-  if (!states_.empty() && has_jumped(states_.back(), state)) states_.clear();
+  if (!states_.empty() && has_jumped(states_.back(), state)) follow_jump(state);
   if (state.yaw_rate != 0.0 || states_.empty()) last_turn_ = state.stamp;
   VehicleState given = state;
   const bool never_filled = state.yaw_rate == 0.0 && state.stamp - last_turn_ >= kZeroInterval;
@@ -30,7 +29,21 @@ void PoseBuffer::add(const VehicleState& state) {
   VehicleState& newest = states_.back();
   if (!std::isfinite(given.yaw_rate) || !odometry_.trusts_yaw_rate()) newest.yaw_rate = turn_rate();
   if (!std::isfinite(given.speed) || !odometry_.trusts_speed()) newest.speed = speed_along();
-  while (states_.front().stamp < state.stamp - kKept) states_.pop_front();
+  while (states_.front().stamp < state.stamp - kept_) states_.pop_front();
+}
+
+void PoseBuffer::clear() {
+  const Duration kept = kept_;
+  *this = PoseBuffer();
+  kept_ = kept;
+}
+
+void PoseBuffer::follow_jump(const VehicleState& to) {
+  const VehicleState& last = states_.back();
+  const Pose2 expected = carried_on(last, to_seconds(to.stamp - last.stamp));
+  for (VehicleState& state : states_) {
+    state.map_from_base = to.map_from_base.to_parent(expected.to_local(state.map_from_base));
+  }
 }
 
 const VehicleState* PoseBuffer::first_since(Time stamp) const {
@@ -63,7 +76,7 @@ std::optional<Pose2> PoseBuffer::at(Time stamp) const {
   if (after != states_.end() && after->stamp == stamp) return after->map_from_base;
   if (after == states_.begin() || after == states_.end()) {
     const VehicleState& end = after == states_.end() ? states_.back() : states_.front();
-    const Time beyond = stamp - end.stamp;
+    const Duration beyond = stamp - end.stamp;
     if (beyond > kMaxExtrapolation || -beyond > kMaxExtrapolation) return std::nullopt;
     return carried_on(end, to_seconds(beyond));
   }

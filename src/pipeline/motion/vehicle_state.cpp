@@ -82,6 +82,8 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
   const double along = base.linear_velocity.head<2>().dot(state.map_from_base.forward());
   state.speed = chassis && std::isfinite(chassis->speed) ? chassis->speed : along;
   state.yaw_rate = base.angular_velocity_body.z();
+  state.position_stddev = base.position_stddev;
+  state.heading_stddev = base.heading_stddev;
   return state;
 }
 
@@ -100,9 +102,10 @@ std::optional<std::string> speeds_disagree(const Localization& base, const Chass
 bool has_jumped(const VehicleState& before, const VehicleState& after) {
   const double moved = (after.map_from_base.position() - before.map_from_base.position()).norm();
   const double seconds = std::abs(to_seconds(after.stamp - before.stamp));
-  const double fastest =
-      std::isfinite(after.speed) ? std::max(std::abs(before.speed), std::abs(after.speed)) : kFastest;
-  return moved > kJump + 1.5 * seconds * fastest;
+  const double fastest = std::isfinite(before.speed) && std::isfinite(after.speed)
+                             ? std::max(std::abs(before.speed), std::abs(after.speed))
+                             : kFastest;
+  return !(moved <= kJump + 1.5 * seconds * fastest);  // NaN is no place that can be driven to
 }
 
 Pose2 carried_on(const VehicleState& state, double seconds) {

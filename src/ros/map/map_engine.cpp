@@ -52,8 +52,9 @@ void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, con
   const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_->base_frame);
   if (link_from_base) {
     const bool is_base = link == config_->base_frame;
-    // A late one is dropped: what is passed on with the map must be the pose that the map is for.
-    if (!pipeline_.set_localization(localization, is_base ? std::nullopt : link_from_base)) return;
+    // A stray one is dropped: what is passed on with the map must be the pose that the map is for.
+    if (!pipeline_.set_localization(localization, is_base ? std::nullopt : link_from_base, to_core(received)))
+      return;
   }
   localization_ = message;
   newest_pose_ = localization.stamp;
@@ -61,7 +62,7 @@ void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, con
 }
 
 void MapEngine::on_chassis(const ChassisConstPtr& message, const ros::Time& received) {
-  pipeline_.set_chassis(to_core(*message, received));
+  pipeline_.set_chassis(to_core(*message, received), to_core(received));
 }
 
 void MapEngine::on_lane_markers(const LaneMarkersConstPtr& message, const ros::Time& received) {
@@ -74,7 +75,7 @@ void MapEngine::on_lane_markers(const LaneMarkersConstPtr& message, const ros::T
     return;
   }
   marker_fault_.clear();
-  pipeline_.set_lane_markers(to_core(*message, planar(*base_from_sensor), received));
+  pipeline_.set_lane_markers(to_core(*message, planar(*base_from_sensor), received), to_core(received));
 }
 
 std::optional<core::Status> MapEngine::localization_fault(const ros::Time& now) const {
@@ -103,7 +104,10 @@ bool MapEngine::pose_is_of_now(const ros::Time& now) const {
 }
 
 MapMsgPtr MapEngine::tick(const ros::Time& now) {
-  if (now < last_tick_) reset();
+  if (core::goes_back(to_core(last_tick_), to_core(now))) {
+    reset();
+    pipeline_.clock_went_back();
+  }
   last_tick_ = now;
   const bool of_now = pose_is_of_now(now);
   if (of_now && mapped_pose_ == newest_pose_ && !config_->predict_to_tick) return nullptr;

@@ -2,6 +2,8 @@
 
 #include <boost/make_shared.hpp>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 
 namespace relative_map {
 
@@ -164,6 +166,15 @@ FusionState to_message(const core::FusionState& fusion) {
   return message;
 }
 
+/// The greatest of those that are given; NaN if none is.
+double given_stddev(std::initializer_list<double> values) {
+  double greatest = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : values) {
+    if (std::isfinite(value) && value > 0.0) greatest = std::fmax(greatest, value);
+  }
+  return greatest;
+}
+
 /// Map <- RFU is map <- FLU turned left: the RFU frame's y is FLU's x.
 void turn_rfu_to_flu(core::Localization& localization) {
   const Eigen::Quaterniond rfu_from_flu(Eigen::AngleAxisd(core::kPi / 2.0, Eigen::Vector3d::UnitZ()));
@@ -174,12 +185,14 @@ void turn_rfu_to_flu(core::Localization& localization) {
 }  // namespace
 
 core::Time to_core(const ros::Time& time) {
-  return std::chrono::seconds(time.sec) + std::chrono::nanoseconds(time.nsec);
+  return core::Time(std::chrono::seconds(time.sec) + std::chrono::nanoseconds(time.nsec));
 }
 
 ros::Time to_ros(core::Time time) {
   ros::Time result;
-  return time.count() > 0 ? result.fromNSec(static_cast<uint64_t>(time.count())) : result;
+  const core::Duration since_epoch = time.time_since_epoch();
+  if (since_epoch > core::Duration::zero()) result.fromNSec(static_cast<uint64_t>(since_epoch.count()));
+  return result;
 }
 
 core::NavigationInfo to_core(const NavigationInfo& message) {
@@ -225,7 +238,10 @@ NavigationInfo to_message(const core::NavigationInfo& info) {
 core::Chassis to_core(const Chassis& message, const ros::Time& received) {
   core::Chassis chassis;
   chassis.stamp = to_core(stamp_or(message.header.stamp, received));
-  const bool reverse = message.gear_location == Chassis::GEAR_REVERSE;
+  const uint8_t gear = message.gear_location;
+  const bool reverse = gear == Chassis::GEAR_REVERSE;
+  chassis.sign_known =
+      reverse || gear == Chassis::GEAR_DRIVE || gear == Chassis::GEAR_LOW || message.speed_mps < 0.0;
   chassis.speed = reverse ? -std::abs(message.speed_mps) : message.speed_mps;
   return chassis;
 }
@@ -240,6 +256,10 @@ core::Localization to_core(const LocalizationEstimate& message, OrientationConve
   localization.heading = message.pose.heading;
   localization.linear_velocity = to_core(message.pose.linear_velocity);
   localization.angular_velocity_body = to_core(message.pose.angular_velocity_vrf);
+  const geometry_msgs::Vector3& of_position = message.uncertainty.position_std_dev;
+  localization.position_stddev = given_stddev({of_position.x, of_position.y});
+  localization.heading_stddev = given_stddev({message.uncertainty.orientation_std_dev.z});
+  if (message.status.code == LocalizationStatus::ERROR) localization.failure = message.status.message;
   if (convention == OrientationConvention::kRfu) turn_rfu_to_flu(localization);
   return localization;
 }

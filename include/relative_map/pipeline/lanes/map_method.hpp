@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <variant>
 #include <vector>
@@ -16,6 +17,7 @@ namespace relative_map::core {
 /// What a tick starts from.
 struct Tick {
   Time now;
+  Time not_before;                ///< the stamp of the last map: the next one's is no earlier
   const VehicleState& localized;  ///< at the time of the newest pose
   const MotionInputs& motion;
   const PipelineConfig& config;
@@ -23,9 +25,10 @@ struct Tick {
   const std::string& current_id;      ///< of the last map
   std::vector<std::string>& remarks;  ///< what is noticed goes here, a sentence each
 
-  /// `vehicle`, a place of the newest pose's time, at the time that the map is for.
+  /// `vehicle`, a place of the newest pose's time, at the time that the map is for: stamps never go back.
   VehicleState at_map_time(const VehicleState& vehicle) const {
-    return config.predict_to_tick ? motion.carried_to(now, vehicle) : vehicle;
+    const Time wanted = std::max(not_before, config.predict_to_tick ? now : vehicle.stamp);
+    return wanted == vehicle.stamp ? vehicle : motion.carried_to(wanted, vehicle);
   }
   /// The lines that the vehicle can be on, or why there is none.
   std::variant<TrackedLines, Status> lines_in_reach(const VehicleState& vehicle) const;

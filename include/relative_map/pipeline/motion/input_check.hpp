@@ -6,6 +6,7 @@
 
 #include "relative_map/model/inputs.hpp"
 #include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/motion/heading_witness.hpp"
 
 namespace relative_map::core {
 
@@ -18,9 +19,20 @@ struct Checked {
   std::optional<Status> refusal;
 };
 
-/// Of any link, as received. A direction that is given twice must be beyond doubt: heading and orientation
-/// that disagree are refused, unless one of them was plainly never filled, or they differ by the 90 degrees
-/// of the other orientation convention, where the heading holds.
+/// Of any link, as received, but for which of its directions holds. Refused where the localization itself
+/// says that it has failed. A heading that is no angle in radians is not given (NaN) afterwards, an
+/// orientation that is none is zero, and others are of unit length.
+Checked<Localization> check_numbers(const Localization& link);
+
+/// Which of heading and orientation holds, by what motion says of them, and turned by the offset from the
+/// course that it is sure of. A direction that the motion contradicts is refused, with its likely cause. Two
+/// that disagree: the one that the motion bears out; before it tells, they are refused, unless one of them
+/// was plainly never filled, or they differ by the 90 degrees of the other orientation convention, where the
+/// heading holds. An orientation that is exactly the identity, beside no heading, was never filled: no
+/// direction is given. The heading is NaN afterwards where the orientation holds.
+void settle_direction(const MotionEvidence& motion, Checked<Localization>& checked);
+
+/// Both, of a single message: without what motion says.
 Checked<Localization> check_localization(const Localization& link);
 
 /// A speed that no car drives is not given (NaN).

@@ -20,6 +20,7 @@ class OdometryCheck {
   /// One of the two, from a pose on.
   struct Course {
     VehicleState begin;
+    VehicleState middle;    ///< half way of a verdict
     double integral = 0.0;  ///< [m] or [rad] since then
     int seconds = 0;        ///< since then that have been looked at
     bool trusted = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -17,6 +18,9 @@ struct VehicleState {
   Pose2 map_from_base;
   double speed = 0.0;     ///< [m/s] negative when reversing; NaN: not given
   double yaw_rate = 0.0;  ///< [rad/s] NaN: not given
+  // Standard deviations by what the localization says of itself: a prior at best. NaN: not given.
+  double position_stddev = std::numeric_limits<double>::quiet_NaN();  ///< [m] of x and of y
+  double heading_stddev = std::numeric_limits<double>::quiet_NaN();   ///< [rad]
 };
 
 /// The pose of base_link, given that of another link of the same rigid body; the velocity gets its lever
@@ -32,7 +36,8 @@ std::variant<VehicleState, Status> make_vehicle_state(const Localization& base,
 /// one tells nothing.
 std::optional<std::string> speeds_disagree(const Localization& base, const Chassis& chassis);
 
-/// Whether the vehicle has moved by more than its speed explains: it was put elsewhere.
+/// Whether the vehicle has moved by more than its speed explains: it was put elsewhere. So it was if a place
+/// is no number.
 bool has_jumped(const VehicleState& before, const VehicleState& after);
 
 /// Constant speed and yaw rate over `seconds` [s], which may be negative: the arc's chord at its mean
