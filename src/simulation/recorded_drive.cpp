@@ -91,7 +91,11 @@ RecordedDrive record_drive(const AccuracyScene& scene) {
   Transmission localizations(sensors.localization, seed, 71), speeds(sensors.chassis, seed, 72),
       images(sensors.markers, seed, 73);
   const auto deliver = [&](const auto& message, const std::vector<Time>& arrivals) {
-    for (const Time arrival : arrivals) drive.deliveries.push_back({arrival, message});
+    for (const Time arrival : arrivals) {
+      drive.deliveries.emplace_back();
+      drive.deliveries.back().time = arrival;
+      drive.deliveries.back().message.emplace<std::decay_t<decltype(message)>>(message);
+    }
   };
   const Duration duration = from_seconds(scene.duration);
   Spoiler spoiler(scene);
