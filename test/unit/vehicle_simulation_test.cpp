@@ -184,7 +184,7 @@ TEST(VehicleSimulation, MarkersLieOnThePaint) {
     if (vehicle.s() > 1020.0) return;  // the paint ends
     const Pose2 base = vehicle.map_from_base();
     const LaneMarkers markers = vehicle.measure_lane_markers();
-    EXPECT_EQ(markers.stamp, vehicle.time());
+    EXPECT_EQ(markers.stamp, Time(vehicle.time()));
     for (const auto& [marker, l] : {std::pair(markers.left, 1.75), std::pair(markers.right, -1.75)}) {
       ASSERT_GT(marker.quality, 0.0);
       shortest = std::min(shortest, marker.view_range);
