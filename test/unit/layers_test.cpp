@@ -21,12 +21,15 @@ const std::map<std::string, std::set<std::string>> kMayUse = {
     {"model", {"geometry", "model"}},
     {"pipeline", {"geometry", "model", "pipeline"}},
     {"route", {"geometry", "model", "route"}},
+    {"prediction", {"geometry", "model", "prediction"}},
     {"io", {"geometry", "model", "io"}},
-    {"simulation", {"geometry", "model", "pipeline", "io", "simulation"}},
-    {"tools", {"geometry", "model", "pipeline", "io", "simulation", "tools"}},
-    {"ros", {"geometry", "model", "pipeline", "route", "io", "ros"}},
-    {"doctor", {"geometry", "model", "pipeline", "route", "io", "ros", "doctor"}},
-    {"apps", {"geometry", "model", "pipeline", "route", "io", "simulation", "tools", "ros", "doctor", "apps"}},
+    {"simulation", {"geometry", "model", "pipeline", "prediction", "io", "simulation"}},
+    {"tools", {"geometry", "model", "pipeline", "prediction", "io", "simulation", "tools"}},
+    {"ros", {"geometry", "model", "pipeline", "route", "prediction", "io", "ros"}},
+    {"doctor", {"geometry", "model", "pipeline", "route", "prediction", "io", "ros", "doctor"}},
+    {"apps",
+     {"geometry", "model", "pipeline", "route", "prediction", "io", "simulation", "tools", "ros", "doctor",
+      "apps"}},
 };
 /// The rooms of the tick, in the order in which each may use those before it.
 const std::vector<std::string> kRooms = {"motion",     "lines",        "paint",   "lanes",
@@ -156,6 +159,9 @@ TEST(Layers, AWrongIncludeIsFound) {
   EXPECT_EQ(fault_of("ros", "relative_map/tools/line_smoother.hpp"), "a layer that is not above it");
   EXPECT_EQ(fault_of("tools", "nav_msgs/Path.h"), "a ROS header");
   EXPECT_EQ(fault_of("ros", "relative_map/doctor/doctor.hpp"), "a layer that is not above it");
+  EXPECT_EQ(fault_of("prediction", "relative_map/pipeline/motion/pose_buffer.hpp"),
+            "a layer that is not above it");
+  EXPECT_EQ(fault_of("prediction", "ros/time.h"), "a ROS header");
   EXPECT_EQ(fault_of("ros", "ros/time.h"), "");
   EXPECT_EQ(fault_of("pipeline", "relative_map/model/map.hpp"), "");
 }
