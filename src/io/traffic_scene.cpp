@@ -89,7 +89,7 @@ void read_tracks(const std::string& file, TrafficScene& scene) {
     const double t = table.number("t", kNotGiven);
     if (!std::isfinite(t) || std::abs(t) > 1e9)
       fail(file, "line " + std::to_string(number) + ": t is no time");
-    sample.stamp = from_seconds(t);
+    sample.stamp = at_seconds(t);
     SeenRoadUser& seen = sample.seen;
     const auto id = ids.emplace(table.text("id"), static_cast<int>(ids.size()));
     seen.id = id.first->second;

@@ -44,7 +44,7 @@ class Judge {
     std::normal_distribution<double> normal(0.0, 1.0);
     for (const SceneSample& sample : scene_.samples) {
       const double dx = normal(random), dy = normal(random);
-      const int step = static_cast<int>(std::lround(to_seconds(sample.stamp) * 10.0));
+      const int step = static_cast<int>(std::lround(seconds_since_epoch(sample.stamp) * 10.0));
       truth_[sample.seen.id][step] = sample.seen.position;
       SeenRoadUser seen = sample.seen;
       seen.position += noise * Point2(dx, dy);
@@ -59,9 +59,9 @@ class Judge {
     const LaneView lanes(scene_.lanes);
     const EgoVehicle ego;
     for (const auto& [step, users] : frames_) {
-      prediction.see({from_seconds(0.1 * step), users}, ego);
+      prediction.see({at_seconds(0.1 * step), users}, ego);
       if (step % 10 != 0) continue;
-      const Prediction result = prediction.predict(from_seconds(0.1 * step), ego, lanes);
+      const Prediction result = prediction.predict(at_seconds(0.1 * step), ego, lanes);
       EXPECT_TRUE(check_prediction(result).empty()) << check_prediction(result).front().what;
       for (const PredictedRoadUser& user : result.users) compare(step, user);
     }

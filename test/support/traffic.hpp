@@ -67,7 +67,7 @@ class Watch {
     std::normal_distribution<double> normal(0.0, 1.0);
     for (int i = 0; from + 0.1 * i <= to + 1e-6; ++i) {
       SeenRoadUsers frame;
-      frame.stamp = from_seconds(1000.0 + from + 0.1 * i);
+      frame.stamp = at_seconds(1000.0 + from + 0.1 * i);
       frame.users = traffic(from + 0.1 * i);
       for (SeenRoadUser& user : frame.users) {
         const double dx = normal(random), dy = normal(random);

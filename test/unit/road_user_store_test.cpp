@@ -11,19 +11,19 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 SeenRoadUsers frame(double t, std::vector<SeenRoadUser> users) {
-  return {from_seconds(100.0 + t), std::move(users)};
+  return {at_seconds(100.0 + t), std::move(users)};
 }
 
 class Store : public testing::Test {
  protected:
   void add(double t, std::vector<SeenRoadUser> users) { store_.add(frame(t, std::move(users)), {0.0, 0.0}); }
   const RoadUser& user(int id, double t) {
-    for (const RoadUser* user : store_.present(from_seconds(100.0 + t))) {
+    for (const RoadUser* user : store_.present(at_seconds(100.0 + t))) {
       if (user->seen().id == id) return *user;
     }
     throw std::runtime_error("not there");
   }
-  std::size_t present(double t) { return store_.present(from_seconds(100.0 + t)).size(); }
+  std::size_t present(double t) { return store_.present(at_seconds(100.0 + t)).size(); }
 
   RoadUserStore store_{RoadUserStoreParam{}, MotionFilterParam{}};
 };

@@ -124,7 +124,7 @@ class SceneRun {
       std::size_t last = first;
       while (last < samples.size() && samples[last].stamp == samples[first].stamp) ++last;
       frame(first, last);
-      const double t = core::to_seconds(samples[first].stamp);
+      const double t = core::seconds_since_epoch(samples[first].stamp);
       if (is_start(t)) predict(t, out);
       first = last;
     }
@@ -133,7 +133,7 @@ class SceneRun {
  private:
   /// On the grid of `every`, counted from the first stamp.
   bool is_start(double t) {
-    const double since = t - core::to_seconds(scene_.samples.front().stamp);
+    const double since = t - core::seconds_since_epoch(scene_.samples.front().stamp);
     const double periods = (since + 1e-6) / arguments_.every;
     if (std::floor(periods) <= last_start_) return false;
     last_start_ = std::floor(periods);
