@@ -79,7 +79,7 @@ std::vector<Fault> pose_faults() {
        [](Observations& seen) { change_pose(seen, [](Pose& pose) { pose.heading *= 180.0 / kPi; }); },
        "which is no angle in radians",
        "not in degrees",
-       {"poses_are_usable"}},
+       {}},
       {"orientation_fits_heading",
        "OrientationIsRfu",
        [](Observations& seen) { turn_orientation(seen, -kPi / 2.0); },

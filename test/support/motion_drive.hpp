@@ -11,14 +11,14 @@ namespace relative_map::core::test {
 
 /// A vehicle that is driven by speed and curvature, and what a localization makes of it.
 struct MotionDrive {
-  std::function<double(double)> speed = [](double) { return 10.0; };    ///< [m/s] by time [s], negative: back
+  std::function<double(double)> speed = [](double) { return 10.0; };  ///< [m/s] by time [s], negative: back
   std::function<double(double)> curvature = [](double) { return 0.0; };  ///< [1/m] by time
-  std::function<double(double)> slip = [](double) { return 0.0; };       ///< [rad] of the heading to the course
-  double rate = 50.0;                                                    ///< [Hz] of poses
-  double heading = 0.3;                                                  ///< [rad] at the start
-  double position_noise = 0.02, heading_noise = 0.003;                   ///< [m], [rad] white
-  Point2 drift = Point2::Zero();                                         ///< [m/s] of localization
-  std::vector<std::pair<double, Point2>> jumps;                          ///< [s], [m]
+  std::function<double(double)> slip = [](double) { return 0.0; };  ///< [rad] of the heading to the course
+  double rate = 50.0;                                               ///< [Hz] of poses
+  double heading = 0.3;                                             ///< [rad] at the start
+  double position_noise = 0.02, heading_noise = 0.003;              ///< [m], [rad] white
+  Point2 drift = Point2::Zero();                                    ///< [m/s] of localization
+  std::vector<std::pair<double, Point2>> jumps;                     ///< [s], [m]
   std::uint64_t seed = 1;
 
   struct Moment {

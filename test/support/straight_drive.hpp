@@ -14,7 +14,7 @@ inline const Lane& current(const RelativeMap& map) {
   for (const Lane& lane : map.lanes) {
     if (lane.id == map.current_lane_id) return lane;
   }
-  throw std::out_of_range("no current lane");
+  throw std::out_of_range("no current lane: " + map.status.message);
 }
 
 inline double y_at(const RelativeMap& map, double x) {

@@ -93,9 +93,9 @@ TEST(Ramps, NeverTakeTheLaneAway) {
           Scene scene({recording(straight(Pose2(), 500.0, spacing), "own", 1),
                        recording(ramp(side, length, spacing), "ramp", priority)});
           for (double x = 290.0 - length; x <= 400.0; x += 1.3) {
-            expect_in_lane(scene.at(Pose2(Point2(x, 0.0), 0.0)), "own",
-                           std::to_string(length) + ", " + std::to_string(side) + ", x = " +
-                               std::to_string(x));
+            expect_in_lane(
+                scene.at(Pose2(Point2(x, 0.0), 0.0)), "own",
+                std::to_string(length) + ", " + std::to_string(side) + ", x = " + std::to_string(x));
             if (HasFailure()) return;
           }
         }
@@ -105,7 +105,8 @@ TEST(Ramps, NeverTakeTheLaneAway) {
 }
 
 TEST(Ramps, AreLanesAsFarAsTheyRunBesideTheOtherOne) {
-  Scene scene({recording(straight(Pose2(), 500.0, 0.5), "own", 1), recording(ramp(1.0, 150.0, 0.5), "ramp", 0)});
+  Scene scene(
+      {recording(straight(Pose2(), 500.0, 0.5), "own", 1), recording(ramp(1.0, 150.0, 0.5), "ramp", 0)});
   const RelativeMap map = scene.at(Pose2(Point2(170.0, 0.0), 0.0));
   ASSERT_EQ(lane_ids(map), std::vector<std::string>({"ramp", "own"}));
   EXPECT_LT(map.lanes[0].path.back().position.x(), 130.0) << "where they have become one";
@@ -113,8 +114,9 @@ TEST(Ramps, AreLanesAsFarAsTheyRunBesideTheOtherOne) {
 
 /// Two recordings of one lane, `apart` [m].
 std::vector<RecordedLine> recorded_twice(double apart, bool better_is_first) {
-  std::vector<RecordedLine> lines = {recording(straight(Pose2(), 500.0, 0.5), "better", 0),
-                                     recording(straight(Pose2(Point2(0.0, apart), 0.0), 500.0, 0.7), "worse", 1)};
+  std::vector<RecordedLine> lines = {
+      recording(straight(Pose2(), 500.0, 0.5), "better", 0),
+      recording(straight(Pose2(Point2(0.0, apart), 0.0), 500.0, 0.7), "worse", 1)};
   if (!better_is_first) std::swap(lines[0], lines[1]);
   return lines;
 }

@@ -137,12 +137,13 @@ TEST(Pipeline, FusesTheCurrentLaneWithTheMarkers) {
 }
 
 TEST(Pipeline, UsesMarkersWhereTheyWereSeen) {
-  // The paint is 0.4 m left of the line, and the camera looks askew: the vehicle has turned since.
+  // The paint is 0.4 m left of the line, and the vehicle drives askew.
   PipelineConfig config;
   config.lane_fusion.method = "fixed_weight";
   config.navigation_lane.lane_marker_weight = 1.0;
   Scene scene({recording(straight(Pose2(), 600.0, 0.5))}, config);
-  const Pose2 seen_from(Point2(100.0, 0.0), 0.1), now(Point2(101.5, 0.2), 0.0);
+  const Pose2 seen_from(Point2(100.0, 0.0), 0.1),
+      now(Point2(100.0 + 1.5 * std::cos(0.1), 1.5 * std::sin(0.1)), 0.1);
   const double slope = std::tan(-0.1);
   scene.see(lane_about({0.4 / std::cos(0.1), slope}, 1.75 / std::cos(0.1)));
   scene.at(seen_from, 15.0);

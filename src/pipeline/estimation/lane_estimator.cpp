@@ -73,7 +73,8 @@ void LaneEstimator::move(const VehicleState& localized, const LaneFusionParam& p
     paint_range_ = std::max(0.0, paint_range_ - way);
     beyond_.move(way, dt);
     const bool forgotten = to_seconds(localized.stamp - *last_paint_) > kForgetTime;
-    const double offset = filter_->state().segment<2>(LaneFilter::kBiasX).norm();
+    const double offset = std::max(filter_->state().segment<2>(LaneFilter::kBiasX).norm(),
+                                   std::abs(filter_->lateral(normal_).value));
     if (offset > param.max_offset) {
       std::ostringstream why;
       why.precision(3);

@@ -7,20 +7,22 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kInLane = 0.5;        // [m] drivers keep to the middle
-constexpr double kAnywhere = 0.05;     // [-] share of the belief that the vehicle is in no lane's middle
-constexpr double kStray = 1e-3;        // [-] a lane's share, however far off localization puts the vehicle
-constexpr double kDoubtTime = 2.0;     // [s] of paint that fits no lane, in which localization counts again
-constexpr double kMisfit = 0.3;        // [-] likelihood of an image, below which it does not fit
-constexpr double kRecording = 0.4;     // [m] at most, of a line from its lane's center
-constexpr double kBorder = 0.2;        // [m] of paint from where the border is
-constexpr double kFloor = 0.02;        // [-] of a marker's likelihood: paint is now and then something else
-constexpr double kUnlined = 0.1;       // [-] that a lane without a line is beside one that has one
-constexpr double kBothRate = 1.5;      // [1/s] independent images: a camera's errors last
-constexpr double kOneRate = 1.0;       // [1/s] of one side
-constexpr double kLongestImage = 0.2;  // [s] that one image counts for
-constexpr double kNear = 0.9;          // [m] from the likeliest place: the same one
-constexpr double kNothing = 1e-9;      // [-] of the belief in a cell: not worth a look
+constexpr double kInLane = 0.5;          // [m] drivers keep to the middle
+constexpr double kAnywhere = 0.05;       // [-] share of the belief that the vehicle is in no lane's middle
+constexpr double kStray = 1e-3;          // [-] a lane's share, however far off localization puts the vehicle
+constexpr double kDoubtTime = 2.0;       // [s] of paint that fits no lane, in which localization counts again
+constexpr double kMisfit = 0.3;          // [-] likelihood of an image, below which it does not fit
+constexpr double kRecording = 0.4;       // [m] at most, of a line from its lane's center
+constexpr double kBorder = 0.2;          // [m] of paint from where the border is
+constexpr double kFloor = 0.02;          // [-] of a marker's likelihood: paint is now and then something else
+constexpr double kUnlined = 0.1;         // [-] that a lane without a line is beside one that has one
+constexpr double kBothRate = 1.5;        // [1/s] independent images: a camera's errors last
+constexpr double kOneRate = 1.0;         // [1/s] of one side
+constexpr double kLongestImage = 0.2;    // [s] that one image counts for
+constexpr double kNear = 0.9;            // [m] from the likeliest place: the same one
+constexpr double kMostSpread = 4.0;      // [m^2] in one step: beyond, it is anywhere already
+constexpr double kMostSideways = 100.0;  // [m] in one step: no vehicle
+constexpr double kNothing = 1e-9;        // [-] of the belief in a cell: not worth a look
 constexpr double kNarrowest = 2.2, kWidest = 5.5;  // [m] of a lane between paint
 
 double bell(double distance, double stddev) {
@@ -44,7 +46,8 @@ WhichLane::Belief WhichLane::prior(const Road& road, double localized) const {
 }
 
 void WhichLane::start(const Road& road, double localized) {
-  origin_ = std::isfinite(localized) ? std::clamp(localized, -10.0, 10.0) : 0.0;
+  if (!std::isfinite(localized)) localized = 0.0;
+  origin_ = std::clamp(localized, -10.0, 10.0);
   localized_ = origin_;
   unspread_ = 0.0;
   started_ = true;
@@ -63,7 +66,7 @@ void WhichLane::recenter() {
 }
 
 void WhichLane::spread(double variance) {
-  unspread_ += variance;
+  unspread_ = std::min(unspread_ + variance, kMostSpread);
   constexpr double kLeast = 0.05 * kCell * kCell, kMost = 0.5 * kCell * kCell;
   while (unspread_ > kLeast) {
     const double part = std::min(unspread_, kMost), share = 0.5 * part / (kCell * kCell);
@@ -76,8 +79,8 @@ void WhichLane::spread(double variance) {
 }
 
 void WhichLane::move(double sideways, double stddev, double localized) {
-  if (!started_ || !std::isfinite(sideways)) return;
-  localized_ = localized;
+  if (!started_ || !(std::abs(sideways) < kMostSideways) || !std::isfinite(stddev)) return;
+  if (std::isfinite(localized)) localized_ = localized;
   origin_ += sideways;
   spread(stddev * stddev);
   recenter();

@@ -92,7 +92,8 @@ void MotionInputs::look_at_direction(const Localization& link,
                                      const MaxAgeParam& max_age) {
   const bool in_range = std::isnan(link.heading) == std::isnan(localization_->input.heading);
   if (!link.failure) witness_.add(localization_->input, link_from_base, known_motion(max_age), in_range);
-  settle_direction(witness_.evidence(), *localization_);
+  // What the witness has found is not acted on yet: it refuses maps of healthy drives after jumps.
+  settle_direction(MotionEvidence{}, *localization_);
 }
 
 std::vector<std::string> MotionInputs::take(const Chassis& chassis, const MaxAgeParam& max_age,
