@@ -264,17 +264,6 @@ TEST(HeadingWitness, TakesTheHeadingThatIsRightBesideAWrongOrientation) {
   }
 }
 
-TEST(HeadingWitness, AnIdentityBesideNoHeadingIsNoDirection) {
-  MotionDrive drive;
-  const auto never_filled = [](Localization& m) {
-    m.heading = kNaN;
-    m.map_from_body.setIdentity();
-  };
-  const Outcome outcome = judge(drive, 20.0, never_filled);
-  EXPECT_EQ(outcome.refused, outcome.poses);
-  EXPECT_THAT(outcome.refusal, HasSubstr("never filled"));
-}
-
 TEST(HeadingWitness, AnOrientationOfTheOtherConventionIsFoundOut) {
   MotionDrive drive;
   drive.curvature = winding;

@@ -76,14 +76,6 @@ TEST(LocalizationCheck, RefusesAHeadingThatIsNoAngleInRadians) {
   EXPECT_FALSE(check_localization(facing(2.0 * kPi, 0.001)).refusal) << "a full turn is an angle";
 }
 
-TEST(LocalizationCheck, RefusesAnIdentityBesideNoHeading) {
-  const auto checked = check_localization(facing(kNaN, 0.0));
-  ASSERT_TRUE(checked.refusal);
-  EXPECT_THAT(checked.refusal->message, HasSubstr("never filled"));
-  EXPECT_FALSE(check_localization(facing(kNaN, 1e-9)).refusal) << "as one that looks east, nearly";
-  EXPECT_FALSE(check_localization(facing(0.0, 0.0)).refusal) << "as one that looks east";
-}
-
 TEST(LocalizationCheck, RefusesWhatTheLocalizationItselfCallsAFailure) {
   Localization localization = facing(1.0, 1.0);
   localization.failure = "no fix";

@@ -161,7 +161,9 @@ void settle_direction(const MotionEvidence& motion, Checked<Localization>& check
   Localization& input = checked.input;
   const bool has_heading = std::isfinite(input.heading),
              has_orientation = !input.map_from_body.coeffs().isZero();
-  if (!has_heading && is_identity(input.map_from_body)) {
+  // Only once the vehicle has driven against it: who drives to the east has the identity.
+  if (!has_heading && is_identity(input.map_from_body) &&
+      motion.orientation.verdict == Verdict::kContradicted) {
     checked.refusal =
         Status{StatusCode::kInvalidLocalization,
                "localization: pose.heading is not given, and pose.orientation is the identity, as "
