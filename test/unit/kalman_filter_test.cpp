@@ -1,4 +1,4 @@
-#include "relative_map/pipeline/estimation/kalman_filter.hpp"
+#include "relative_map/geometry/kalman_filter.hpp"
 
 #include <gtest/gtest.h>
 

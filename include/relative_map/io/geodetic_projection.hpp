@@ -5,16 +5,10 @@
 #include <vector>
 
 #include "relative_map/io/line_header.hpp"
+#include "relative_map/model/geo_reference.hpp"
 #include "relative_map/model/inputs.hpp"
 
 namespace relative_map::core {
-
-/// A place on the WGS 84 ellipsoid.
-struct GeoPoint {
-  double longitude = 0.0;  ///< [deg] east positive
-  double latitude = 0.0;   ///< [deg] north positive
-  double altitude = 0.0;   ///< [m] above the ellipsoid; NaN: not given
-};
 
 /// The UTM zone of all these points. Throws std::runtime_error, one sentence, if there is none that holds
 /// them all, or a point lies on no zone (near the poles) or is not on the earth.

@@ -3,23 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "relative_map/model/geo_reference.hpp"
+
 namespace relative_map::core {
-
-enum class Projection {
-  kNone,   ///< not known
-  kUtm,    ///< easting and northing of a UTM zone
-  kLocal,  ///< ENU, tangent to the ellipsoid at an origin
-};
-
-/// Where a map frame lies on the earth (WGS 84), as far as it is known.
-struct GeoReference {
-  Projection projection = Projection::kNone;
-  int zone = 0;            ///< UTM: 1 to 60
-  bool north = true;       ///< UTM: the hemisphere
-  double latitude = 0.0;   ///< [deg] local: of the origin
-  double longitude = 0.0;  ///< [deg]
-  double altitude = 0.0;   ///< [m] above the ellipsoid
-};
 
 /// A stretch that nothing was recorded on, and that a tool has put points across all the same: a guess, and a
 /// fault until somebody accepts it. From the last point before it to the first one after it, map frame.

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "relative_map/geometry/kalman_filter.hpp"
 #include "relative_map/model/sensor_noise.hpp"
-#include "relative_map/pipeline/estimation/kalman_filter.hpp"
 #include "relative_map/pipeline/estimation/offset_profile.hpp"
 #include "relative_map/pipeline/lines/line_walker.hpp"
 #include "relative_map/pipeline/motion/vehicle_state.hpp"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "relative_map/geometry/cubic.hpp"
+#include "relative_map/geometry/kalman_filter.hpp"
 #include "relative_map/model/map.hpp"
-#include "relative_map/pipeline/estimation/kalman_filter.hpp"
 #include "relative_map/pipeline/motion/vehicle_state.hpp"
 #include "relative_map/pipeline/paint/paint_samples.hpp"
 

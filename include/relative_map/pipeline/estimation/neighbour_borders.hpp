@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "relative_map/geometry/kalman_filter.hpp"
 #include "relative_map/model/inputs.hpp"
-#include "relative_map/pipeline/estimation/kalman_filter.hpp"
 #include "relative_map/pipeline/lanes/lane_path.hpp"
 
 namespace relative_map::core {
