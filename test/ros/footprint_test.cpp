@@ -184,6 +184,15 @@ TEST(Footprint, OfTheUrdfGoesIntoTheConfiguration) {
   expect_footprint(make_node_config({}, urdf).pipeline.footprint, 3.5, 0.5, 1.0);
 }
 
+TEST(Footprint, ATfPrefixNeedNotBeInTheDescription) {
+  const std::string urdf = robot(link("base_link", collision(kBox, "1.5 0 0")));
+  expect_footprint(footprint_from_urdf(urdf, "car1/base_link"), 3.5, 0.5, 1.0);
+  expect_footprint(footprint_from_urdf(urdf, "fleet/car1/base_link"), 3.5, 0.5, 1.0);
+  EXPECT_THAT(refusal_of(urdf, "car1/rear_axle"), HasSubstr("no link 'car1/rear_axle'"));
+  const std::string prefixed = robot(link("car1/base_link", collision(kBox, "1.0 0 0")));
+  expect_footprint(footprint_from_urdf(prefixed, "car1/base_link"), 3.0, 1.0, 1.0);
+}
+
 TEST(Footprint, ParametersTakeTheUrdfsPlaceOneByOne) {
   const std::string urdf = robot(link("base_link", collision(kBox, "1.5 0 0")));
   const NodeConfig config = make_node_config({{"footprint/half_width", 1.25}}, urdf);

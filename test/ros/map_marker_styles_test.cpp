@@ -236,7 +236,7 @@ TEST(RawLine, IsDrawnBesideTheFusedPath) {
   Scene scene(20.0, config);
   const MapMsg map = scene.map(0.4);
   ASSERT_NEAR(map.fusion.lateral_offset, 0.4, 0.05);
-  RawLine raw(OrientationConvention::kFlu, [](auto&, auto&) { return Eigen::Isometry3d::Identity(); });
+  RawLine raw(OrientationConvention::kFlu, [](auto&, auto&, auto&) { return Eigen::Isometry3d::Identity(); });
   const core::Polyline line = raw.beside(map, scene.engine()->navigation_lines(), 15.0);
   ASSERT_GT(line.size(), 200u);
   for (const Point2& point : line) EXPECT_NEAR(point.y(), 0.0, 1e-9);
@@ -253,7 +253,7 @@ TEST(RawLine, IsDrawnBesideTheFusedPath) {
 }
 
 TEST(RawLine, IsThereOnlyWithAMapOfLines) {
-  const LinkTransforms none = [](auto&, auto&) { return std::nullopt; };
+  const LinkTransforms none = [](auto&, auto&, auto&) { return std::nullopt; };
   RawLine raw(OrientationConvention::kFlu, none);
   Scene scene;
   const MapMsg map = scene.map();

@@ -196,7 +196,7 @@ class Numbers(NodeTest):
             self.expect([text for text in texts if text != 'navigation'], is_right)
             sending.shutdown()
             sending.join()
-            self.assertTrue(all(entry.startswith('navigation: ') for entry in self.log
+            self.assertTrue(all(entry.startswith('/relative_map: navigation: ') for entry in self.log
                                 if all(text in entry for text in texts[1:])), self.log)
             self.vehicle.navigation.publish(messages.three_lines())
             self.expect_whole_again(texts)

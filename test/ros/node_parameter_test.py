@@ -66,7 +66,10 @@ class Parameters(NodeTest):
                     {'default_speed_limit': 0.0}, {'default_speed_limit': 500.0}, {'min_lane_marker_quality': 2.0},
                     {'max_len_from_navigation_line': 1e6}, {'max_distance_to_navigation_line': 1e6}):
             request = dict({'default_right_width': 1.9}, **bad)
-            self.assertEqual(client.update_configuration(request), before, bad)
+            answer = client.update_configuration(request)
+            self.assertIn(next(iter(bad)), answer['refusal'])
+            self.assertEqual(dict(answer, refusal=''), before, bad)
+        self.assertEqual(client.update_configuration({})['refusal'], '')
         first = len(self.maps.data)
         wait_for(lambda: len(self.maps.data) > first + 2, 'maps')
         for lane in self.maps.message(-1).hdmap.lane:

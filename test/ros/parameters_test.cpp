@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 // Relative to the package, whose folder CMake names.
@@ -49,11 +50,15 @@ std::map<std::string, std::string> described(const NodeConfig& config) {
       {"max_age/localization", p.max_age.localization},
       {"max_age/chassis", p.max_age.chassis},
       {"max_age/lane_markers", p.max_age.lane_markers},
+      {"min_rate/localization", config.min_rate.localization},
+      {"min_rate/chassis", config.min_rate.chassis},
+      {"min_rate/lane_markers", config.min_rate.lane_markers},
       {"half_width", p.footprint.half_width},
       {"front_overhang", p.footprint.front_overhang},
       {"rear_overhang", p.footprint.rear_overhang},
   };
-  std::map<std::string, std::string> texts = {{"base_frame", p.base_frame}, {"method", p.lane_fusion.method}};
+  std::map<std::string, std::string> texts = {
+      {"base_frame", p.base_frame}, {"map_frame", config.map_frame}, {"method", p.lane_fusion.method}};
   for (const auto& [name, number] : numbers) {
     std::ostringstream text;
     text.precision(17);
@@ -130,10 +135,9 @@ TEST(Parameters, EveryShippedFileIsAccepted) {
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SOURCE_FILE("config"))) {
     // Those of other nodes are accepted by tests of their own.
-    const std::string name = entry.path().filename();
-    const bool of_another =
-        name == "simulator_errors.yaml" || name == "route.yaml" || name == "prediction.yaml";
-    if (entry.path().extension() != ".yaml" || of_another) continue;
+    const std::set<std::string> of_others = {"simulator_errors.yaml", "route.yaml", "prediction.yaml",
+                                             "adapters.yaml"};
+    if (entry.path().extension() != ".yaml" || of_others.count(entry.path().filename()) > 0) continue;
     EXPECT_EQ(refusal_of(read_yaml(entry.path())), "accepted") << entry.path();
     ++files;
   }
@@ -148,7 +152,8 @@ TEST(Parameters, EachValueArrivesAtItsPlace) {
   ParameterSet parameters = all_keys();
   std::map<std::string, std::string> expected = described(NodeConfig());
   for (auto& [key, value] : parameters) {
-    const std::string leaf = key.rfind("max_age", 0) == 0 ? key : key.substr(key.rfind('/') + 1);
+    const bool whole = key.rfind("max_age", 0) == 0 || key.rfind("min_rate", 0) == 0;
+    const std::string leaf = whole ? key : key.substr(key.rfind('/') + 1);
     if (auto* number = std::get_if<double>(&value)) {
       *number += 0.125;
       std::ostringstream text;
@@ -161,9 +166,11 @@ TEST(Parameters, EachValueArrivesAtItsPlace) {
     }
   }
   parameters["base_frame"] = std::string("rear_axle");
+  parameters["map_frame"] = std::string("utm");
   parameters["orientation_convention"] = std::string("rfu");
   parameters["navigation_lane/lane_source"] = std::string("PERCEPTION");
   expected["base_frame"] = "rear_axle";
+  expected["map_frame"] = "utm";
   expected["rfu"] = expected["perception"] = "1";
   EXPECT_EQ(described(make_node_config(parameters, "")), expected);
 }
@@ -216,6 +223,9 @@ TEST(Parameters, EachImpossibleValueIsRefusedByName) {
       {"max_age/localization", -1.0},
       {"max_age/chassis", 0.0},
       {"max_age/lane_markers", 0.0},
+      {"min_rate/localization", -1.0},
+      {"min_rate/chassis", 1001.0},
+      {"min_rate/lane_markers", -0.5},
       {"footprint/half_width", 0.0},
       {"footprint/front_overhang", -0.1},
       {"footprint/rear_overhang", -0.1},
@@ -260,6 +270,40 @@ TEST(Parameters, OnlyTheNodesOwnReconfigureNamespaceIsLeftOut) {
   XmlRpc::XmlRpcValue tree;
   tree["map_param"]["reconfigure"] = 1.8;
   EXPECT_THAT(refusal_of(flatten(tree)), HasSubstr("map_param/reconfigure is not a parameter"));
+}
+
+/// As other nodes and libraries leave them there.
+TEST(Parameters, WhatBelongsToOthersIsNoUnknownKey) {
+  XmlRpc::XmlRpcValue tree;
+  tree["rate"] = 20;
+  tree["robot_description"] = "<robot name='car'/>";
+  tree["diagnostic_period"] = 0.5;
+  tree["tf_prefix"] = "car1";
+  EXPECT_EQ(flatten(tree).size(), 1u);
+  EXPECT_EQ(refusal_of(flatten(tree)), "accepted");
+  tree["map_param"]["diagnostic_period"] = 1.0;
+  EXPECT_THAT(refusal_of(flatten(tree)), HasSubstr("map_param/diagnostic_period is not a parameter"));
+}
+
+TEST(Parameters, SpeedLimitsAreReadByTheNameOfTheLine) {
+  const NodeConfig config =
+      make_node_config({{"map_param/speed_limits/left", 13.9}, {"map_param/speed_limits/a 1", 5}}, "");
+  EXPECT_EQ(config.speed_limits, (std::map<std::string, double>{{"left", 13.9}, {"a 1", 5.0}}));
+  EXPECT_THAT(refusal_of({{"map_param/speed_limits/left", 0.0}}),
+              HasSubstr("map_param/speed_limits/left is 0"));
+  EXPECT_THAT(refusal_of({{"map_param/speed_limits/left", std::string("fast")}}),
+              HasSubstr("must be a number"));
+  const YamlFile file("map_param:\n  speed_limits: {middle: 13.9}\n");
+  EXPECT_EQ(make_node_config(read_yaml(file.path()), "").speed_limits.at("middle"), 13.9);
+}
+
+TEST(Parameters, FramesLoseTheSlashOfTf1) {
+  const NodeConfig config = make_node_config(
+      {{"base_frame", std::string("/car1/base_link")}, {"map_frame", std::string("/utm")}}, "");
+  EXPECT_EQ(config.pipeline.base_frame, "car1/base_link");
+  EXPECT_EQ(config.map_frame, "utm");
+  EXPECT_THAT(refusal_of({{"base_frame", std::string("/")}}), HasSubstr("base_frame is empty"));
+  EXPECT_THAT(refusal_of({{"map_frame", std::string("")}}), HasSubstr("map_frame is empty"));
 }
 
 TEST(Parameters, NoTreeFlattensToNone) {

@@ -196,7 +196,7 @@ std::vector<core::RecordedPose> PoseCollector::in_order_of_sending(
 
 std::string PoseCollector::missing_transform() const {
   for (const std::string& link : links_) {
-    if (transforms_(link, base_frame_)) continue;
+    if (transforms_(link, base_frame_, ros::Time())) continue;
     return "its poses are of '" + link + "', and there is no transform from that to '" + base_frame_ +
            "' in /tf_static: record it, too, or name the frame that the line shall be of by --base-frame";
   }
@@ -217,7 +217,7 @@ CarriedPoses PoseCollector::poses(core::GeoReference& reference) const {
         ++result.without_direction;
         continue;
       }
-      pose = core::carry_to_base(pose, *transforms_(entry.link, base_frame_));
+      pose = core::carry_to_base(pose, *transforms_(entry.link, base_frame_, ros::Time()));
       heading = pose.heading;
     }
     result.poses.push_back({core::seconds_since_epoch(pose.stamp), pose.position.x(), pose.position.y(),

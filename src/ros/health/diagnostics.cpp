@@ -1,5 +1,6 @@
 #include "relative_map/ros/health/diagnostics.hpp"
 
+#include <cmath>
 #include <sstream>
 
 namespace relative_map {
@@ -123,7 +124,11 @@ void summarize(const MapStatistics& statistics, diagnostic_updater::DiagnosticSt
   status.add("marker age [s]", map.fusion.marker_age);
   for (const auto& [topic, input] : statistics.inputs) {
     status.add(topic + " rate [Hz]", input.rate);
-    status.add(topic + " age [s]", input.age);
+    if (std::isnan(input.age)) {
+      status.add(topic + " age [s]", "none has come");
+    } else {
+      status.add(topic + " age [s]", input.age);
+    }
   }
   status.add("tick time [ms]", 1e3 * statistics.tick_time);
   status.add("maps", statistics.maps);

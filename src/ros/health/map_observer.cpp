@@ -1,6 +1,7 @@
 #include "relative_map/ros/health/map_observer.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "relative_map/pipeline/lanes/lane_path.hpp"
 
@@ -96,6 +97,10 @@ MapStatistics MapObserver::statistics(const ros::Time& now, const ros::WallTime&
   count_drop_outs(wall_now, result);
   if (wall_now - remarked_ > kRemarkTime) result.remarks.clear();
   for (const auto& [topic, input] : inputs_) {
+    if (input.arrivals.empty()) {
+      result.inputs[topic] = {0.0, std::numeric_limits<double>::quiet_NaN()};
+      continue;
+    }
     const auto recent =
         std::count_if(input.arrivals.begin(), input.arrivals.end(),
                       [&](const ros::WallTime& arrival) { return arrival >= wall_now - kRateWindow; });

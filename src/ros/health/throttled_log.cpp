@@ -8,6 +8,7 @@ namespace {
 
 const ros::WallDuration kPeriod(10.0);  // between repetitions
 constexpr std::size_t kMaxKept = 200;   // complaints; there are not that many kinds
+constexpr std::size_t kMaxInPeriod = 30;
 
 bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
@@ -58,9 +59,16 @@ std::string without_numbers(const std::string& text) {
 }  // namespace
 
 bool ThrottledLog::due(const std::string& complaint, const ros::WallTime& now) {
+  if (period_start_.isZero() || now - period_start_ >= kPeriod) {
+    period_start_ = now;
+    told_in_period_ = 0;
+  }
   if (last_.size() > kMaxKept) last_.clear();
   ros::WallTime& last = last_[without_numbers(complaint)];
   if (!last.isZero() && now - last < kPeriod) return false;
+  // Complaints that differ each time, as in a name that is scrap, are kinds of their own: they must not flood
+  // the log.
+  if (++told_in_period_ > kMaxInPeriod) return false;
   last = now;
   return true;
 }

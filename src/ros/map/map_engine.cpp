@@ -27,6 +27,7 @@ std::string joined(const std::vector<std::string>& sentences) {
 
 MapEngine::MapEngine(const NodeConfig& config, LinkTransforms transforms)
     : config_(std::make_shared<core::PipelineConfig>(config.pipeline)),
+      speed_limits_(config.speed_limits),
       convention_(config.orientation_convention),
       transforms_(std::move(transforms)),
       pipeline_(config_) {}
@@ -49,7 +50,8 @@ void MapEngine::set_config(const core::PipelineConfig& config) {
 void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, const ros::Time& received) {
   const core::Localization localization = to_core(*message, convention_, received);
   const std::string link = link_of(message->child_frame_id, config_->base_frame);
-  const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_->base_frame);
+  const std::optional<Eigen::Isometry3d> link_from_base =
+      transforms_(link, config_->base_frame, to_ros(localization.stamp));
   if (link_from_base) {
     const bool is_base = link == config_->base_frame;
     // A stray one is dropped: what is passed on with the map must be the pose that the map is for.
@@ -68,7 +70,8 @@ void MapEngine::on_chassis(const ChassisConstPtr& message, const ros::Time& rece
 void MapEngine::on_lane_markers(const LaneMarkersConstPtr& message, const ros::Time& received) {
   markers_ = message;
   const std::string frame = link_of(message->header.frame_id, config_->base_frame);
-  const std::optional<Eigen::Isometry3d> base_from_sensor = transforms_(config_->base_frame, frame);
+  const ros::Time& stamp = message->header.stamp.isZero() ? received : message->header.stamp;
+  const std::optional<Eigen::Isometry3d> base_from_sensor = transforms_(config_->base_frame, frame, stamp);
   if (!base_from_sensor) {
     marker_fault_ =
         "lane markers are dropped: no transform from '" + frame + "' to '" + config_->base_frame + "'";
@@ -103,6 +106,14 @@ bool MapEngine::pose_is_of_now(const ros::Time& now) const {
          std::abs(core::to_seconds(to_core(now) - *newest_pose_)) <= config_->max_age.localization;
 }
 
+/// A lane is named as its line was.
+void MapEngine::set_speed_limits(core::RelativeMap& map) const {
+  for (core::Lane& lane : map.lanes) {
+    const auto limit = speed_limits_.find(lane.name);
+    if (limit != speed_limits_.end()) lane.speed_limit = limit->second;
+  }
+}
+
 MapMsgPtr MapEngine::tick(const ros::Time& now) {
   if (core::goes_back(to_core(last_tick_), to_core(now))) {
     reset();
@@ -116,6 +127,7 @@ MapMsgPtr MapEngine::tick(const ros::Time& now) {
   const std::optional<core::Status> fault = localization_fault(now);
   core::RelativeMap built = fault ? pipeline_.empty_map(*fault, of_now ? *newest_pose_ : to_core(now))
                                   : pipeline_.tick(to_core(now));
+  set_speed_limits(built);
   map_ = core::checked(std::move(built), {config_->base_frame, published_sequence_num_});
   published_sequence_num_ = map_.sequence_num;
   remarks_ = fault ? std::vector<std::string>() : pipeline_.remarks();

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
     relative_map::RelativeMapNode node(nh, private_nh);
     ros::spin();
   } catch (const std::exception& fault) {
-    ROS_FATAL_STREAM(fault.what());
+    ROS_FATAL_STREAM(private_nh.getNamespace() << ": " << fault.what());
     return 1;
   }
   return 0;

@@ -15,7 +15,7 @@ class RelativeMapNodelet : public nodelet::Nodelet {
       node_ = std::make_unique<RelativeMapNode>(getNodeHandle(), getPrivateNodeHandle());
     } catch (const std::exception& fault) {
       // The manager stays alive and may lose an exception's text.
-      NODELET_FATAL_STREAM(fault.what());
+      NODELET_FATAL_STREAM(getName() << ": " << fault.what());
       throw;
     }
   }

@@ -64,12 +64,19 @@ Eigen::Isometry3d climb_to_root(urdf::LinkConstSharedPtr& link) {
   return root_from_base.inverse();
 }
 
+/// By its name, or by what follows a tf prefix: 'car1/base_link' is the URDF's 'base_link'.
+urdf::LinkConstSharedPtr find_link(const urdf::Model& model, const std::string& name) {
+  const urdf::LinkConstSharedPtr link = model.getLink(name);
+  const std::size_t slash = name.rfind('/');
+  return link || slash == std::string::npos ? link : model.getLink(name.substr(slash + 1));
+}
+
 }  // namespace
 
 core::Footprint footprint_from_urdf(const std::string& urdf, const std::string& base_frame) {
   urdf::Model model;
   if (!model.initString(urdf)) throw std::runtime_error("robot_description is no valid URDF");
-  urdf::LinkConstSharedPtr link = model.getLink(base_frame);
+  urdf::LinkConstSharedPtr link = find_link(model, base_frame);
   if (!link) throw std::runtime_error("robot_description has no link '" + base_frame + "'");
   Eigen::AlignedBox3d box;
   const Eigen::Isometry3d base_from_root = climb_to_root(link);

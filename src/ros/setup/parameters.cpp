@@ -15,15 +15,25 @@ namespace relative_map {
 
 namespace {
 
-bool is_of_lines(const std::string& key) {
-  return key == kLinesParameter || key == kLineFolderParameter;
-}
+/// Keys that libraries and tools read from a node's namespace, or leave there: they are none of this node's.
+const std::set<std::string> kForeignKeys = {kReconfigureNamespace,
+                                            kLinesParameter,
+                                            kLineFolderParameter,
+                                            "robot_description",
+                                            "robot_description_semantic",
+                                            "diagnostic_period",
+                                            "diagnostic_updater",
+                                            "tf_prefix",
+                                            "use_sim_time",
+                                            "enable_statistics",
+                                            "bond_disable_heartbeat_timeout",
+                                            "num_worker_threads"};
 
 void flatten_into(ParameterSet& set, const std::string& path, XmlRpc::XmlRpcValue value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeStruct:
       for (auto& [key, child] : value) {
-        if (path.empty() && (key == kReconfigureNamespace || is_of_lines(key))) continue;
+        if (path.empty() && kForeignKeys.count(key) > 0) continue;
         flatten_into(set, path.empty() ? key : path + "/" + key, child);
       }
       break;
@@ -59,7 +69,7 @@ void flatten_into(ParameterSet& set, const std::string& path, const YAML::Node& 
   if (node.IsMap()) {
     for (const auto& entry : node) {
       const std::string key = entry.first.as<std::string>();
-      if (path.empty() && is_of_lines(key)) continue;
+      if (path.empty() && kForeignKeys.count(key) > 0) continue;
       flatten_into(set, path.empty() ? key : path + "/" + key, entry.second);
     }
   } else if (node.IsScalar()) {
@@ -108,6 +118,16 @@ class Reader {
     faults.push_back(name + " is '" + word + "', but must be " + choice);
   }
 
+  /// All numbers below a name, by what follows it.
+  void read_group(const std::string& name, std::map<std::string, double>& values) {
+    const std::string prefix = name + "/";
+    for (auto entry = parameters_.lower_bound(prefix);
+         entry != parameters_.end() && entry->first.compare(0, prefix.size(), prefix) == 0; ++entry) {
+      double value = 0.0;
+      if (read(entry->first, value)) values[entry->first.substr(prefix.size())] = value;
+    }
+  }
+
   void note_unknown() {
     for (const auto& [name, value] : parameters_) {
       if (known_.count(name) == 0) faults.push_back(name + " is not a parameter of this node");
@@ -136,7 +156,7 @@ class Reader {
 };
 
 void read_pipeline(Reader& reader, core::PipelineConfig& config) {
-  reader.read("base_frame", config.base_frame);
+  if (reader.read("base_frame", config.base_frame)) config.base_frame = frame_name(config.base_frame);
   reader.read("predict_to_tick", config.predict_to_tick);
   reader.read("enable_cyclic_rerouting", config.enable_cyclic_rerouting);
   reader.read("generate_left_boundary", config.generate_left_boundary);
@@ -220,6 +240,11 @@ NodeConfig make_node_config(const ParameterSet& parameters, const std::string& u
   reader.read("use_navigation_mode", config.use_navigation_mode);
   reader.read("orientation_convention", config.orientation_convention,
               {{"flu", OrientationConvention::kFlu}, {"rfu", OrientationConvention::kRfu}});
+  if (reader.read("map_frame", config.map_frame)) config.map_frame = frame_name(config.map_frame);
+  reader.read_group("map_param/speed_limits", config.speed_limits);
+  reader.read("min_rate/localization", config.min_rate.localization);
+  reader.read("min_rate/chassis", config.min_rate.chassis);
+  reader.read("min_rate/lane_markers", config.min_rate.lane_markers);
   read_pipeline(reader, config.pipeline);
   read_footprint(reader, urdf, config.pipeline);
   reader.note_unknown();
@@ -228,6 +253,19 @@ NodeConfig make_node_config(const ParameterSet& parameters, const std::string& u
   if (!(config.rate > 0.0 && config.rate <= 1000.0)) {
     faults.push_back("rate is " + std::to_string(config.rate) + " Hz, but must be above 0 and at most 1000");
   }
+  for (const auto& [name, rate] : {std::pair("localization", config.min_rate.localization),
+                                   std::pair("chassis", config.min_rate.chassis),
+                                   std::pair("lane_markers", config.min_rate.lane_markers)}) {
+    if (rate >= 0.0 && rate <= 1000.0) continue;
+    faults.push_back("min_rate/" + std::string(name) + " is " + std::to_string(rate) +
+                     " Hz, but must lie in [0, 1000]");
+  }
+  for (const auto& [line, limit] : config.speed_limits) {
+    if (limit >= 0.1 && limit <= 100.0) continue;
+    faults.push_back("map_param/speed_limits/" + line + " is " + std::to_string(limit) +
+                     " m/s, but must lie in [0.1, 100]");
+  }
+  if (config.map_frame.empty()) faults.push_back("map_frame is empty, but must name a frame");
   if (!config.use_navigation_mode) {
     faults.push_back(
         "use_navigation_mode is false, but this node is the navigation mode: do not start it, or set it to "

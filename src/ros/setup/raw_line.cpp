@@ -11,7 +11,7 @@ std::variant<core::VehicleState, core::Status> RawLine::vehicle_of(const MapMsg&
   core::Localization base = to_core(map.localization, convention_, map.header.stamp);
   const std::string link = frame_name(map.localization.child_frame_id);
   if (!link.empty() && link != map.header.frame_id) {
-    const auto link_from_base = transforms_(link, map.header.frame_id);
+    const auto link_from_base = transforms_(link, map.header.frame_id, map.localization.header.stamp);
     if (!link_from_base) return core::Status{core::StatusCode::kNoTransform, ""};
     base = core::carry_to_base(base, *link_from_base);
   }

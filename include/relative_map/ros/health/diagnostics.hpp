@@ -12,7 +12,7 @@ namespace relative_map {
 
 struct InputStatistics {
   double rate = 0.0;  ///< [Hz]
-  double age = 0.0;   ///< [s] of the newest message's stamp
+  double age = 0.0;   ///< [s] of the newest message's stamp; NaN: none has come
 };
 
 /// What /diagnostics tells of the maps.

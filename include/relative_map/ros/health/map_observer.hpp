@@ -16,6 +16,8 @@ namespace relative_map {
 /// no alarm.
 class MapObserver {
  public:
+  /// An input that has a place in the statistics before its first message comes.
+  void expect_input(const std::string& topic) { inputs_[topic]; }
   void note_input(const std::string& topic, const ros::Time& stamp, const ros::WallTime& arrival);
   /// `tick_time` [s] is what the map took to make and publish.
   void note_map(const core::RelativeMap& map, double tick_time, const ros::WallTime& now);

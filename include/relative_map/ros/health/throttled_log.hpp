@@ -13,6 +13,8 @@ class ThrottledLog {
   bool due(const std::string& complaint, const ros::WallTime& now);
 
  private:
+  ros::WallTime period_start_;
+  std::size_t told_in_period_ = 0;
   std::map<std::string, ros::WallTime> last_;
 };
 

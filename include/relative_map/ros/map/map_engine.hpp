@@ -6,6 +6,7 @@
 #include <relative_map/MapMsg.h>
 #include <relative_map/NavigationInfo.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,7 +52,10 @@ class MapEngine {
   /// Neither stale nor of the future.
   bool pose_is_of_now(const ros::Time& now) const;
 
+  void set_speed_limits(core::RelativeMap& map) const;
+
   std::shared_ptr<const core::PipelineConfig> config_;
+  std::map<std::string, double> speed_limits_;  ///< [m/s] by the name of a line
   OrientationConvention convention_;
   LinkTransforms transforms_;
   core::RelativeMapPipeline pipeline_;

@@ -19,16 +19,27 @@ namespace relative_map {
 using Parameter = std::variant<bool, int, double, std::string>;
 using ParameterSet = std::map<std::string, Parameter>;
 
+/// How often an input should come [Hz]; below it /diagnostics warns.
+struct MinRateParam {
+  double localization = 10.0;
+  double chassis = 10.0;
+  double lane_markers = 5.0;
+};
+
 /// All that the node can be told. Defaults as in config/relative_map.yaml.
 struct NodeConfig {
   core::PipelineConfig pipeline;
   double rate = 10.0;  ///< [Hz] of the map
   bool use_navigation_mode = true;
+  std::string map_frame = "map";  ///< that lines of files are in which name none
+  MinRateParam min_rate;
+  std::map<std::string, double> speed_limits;  ///< [m/s] of lanes by the name of their line; others: the default
   OrientationConvention orientation_convention = OrientationConvention::kFlu;
 };
 
-/// Parameters as the parameter server has them; the namespace of dynamic_reconfigure, the list of files
-/// and their folder are left out. What is no scalar is kept as its text, for `make_node_config` to name.
+/// Parameters as the parameter server has them; the namespace of dynamic_reconfigure, the list of files and
+/// their folder, and what other libraries keep in a node's namespace (e.g. robot_description) are left out.
+/// What is no scalar is kept as its text, for `make_node_config` to name.
 ParameterSet flatten(const XmlRpc::XmlRpcValue& tree);
 /// Reads a YAML file; throws std::runtime_error naming file and fault.
 ParameterSet read_yaml(const std::string& file);
