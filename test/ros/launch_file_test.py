@@ -66,6 +66,53 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual(command(node(config, 'relative_map_manager')), ('nodelet', 'nodelet', 'manager'))
         self.assertEqual(len(config.nodes), 2)
 
+    def test_the_managers_name_follows_the_nodelets(self):
+        config = load('relative_map.launch', 'name:=mapper')
+        self.assertEqual(command(node(config, 'mapper')),
+                         ('nodelet', 'nodelet', 'load', 'relative_map/RelativeMapNodelet', 'mapper_manager'))
+        self.assertIsNotNone(node(config, 'mapper_manager'))
+
+    def test_nothing_is_required_unless_asked_for(self):
+        for nodelet in ('true', 'false'):
+            for required in ('true', 'false'):
+                config = load('relative_map.launch', 'nodelet:=' + nodelet, 'required:=' + required)
+                self.assertEqual({node.required for node in config.nodes}, {required == 'true'})
+        self.assertEqual({node.required for node in load('relative_map.launch').nodes}, {False})
+
+    def test_parameters_of_an_earlier_start_are_cleared(self):
+        for nodelet in ('true', 'false'):
+            self.assertIn('/relative_map/', load('relative_map.launch', 'nodelet:=' + nodelet).clear_params)
+
+    def test_lines_and_frames_are_arguments(self):
+        params = load('relative_map.launch', 'navigation_lines:=/data/a b.smoothed, /data/c.csv', 'map_frame:=utm',
+                      'base_frame:=car1/base_link').params
+        self.assertEqual(params['/relative_map/navigation_lines'].value, ['/data/a b.smoothed', '/data/c.csv'])
+        self.assertEqual(params['/relative_map/map_frame'].value, 'utm')
+        self.assertEqual(params['/relative_map/base_frame'].value, 'car1/base_link')
+        self.assertNotIn('/relative_map/navigation_lines', load('relative_map.launch').params)
+
+    def test_standard_inputs_start_the_adapters_and_nothing_else_does(self):
+        self.assertIsNone(node(load('relative_map.launch'), 'relative_map_adapters'))
+        config = load('relative_map.launch', 'odometry:=/odom', 'twist:=/can', 'paths:=a, b', 'base_frame:=rear')
+        self.assertEqual(command(node(config, 'relative_map_adapters')),
+                         ('nodelet', 'nodelet', 'load', 'relative_map/AdaptersNodelet', 'relative_map_manager'))
+        params = {key[len('/relative_map_adapters/'):]: param.value for key, param in config.params.items()
+                  if key.startswith('/relative_map_adapters/')}
+        self.assertEqual((params['odometry'], params['twist'], params['paths'], params['base_frame']),
+                         ('/odom', '/can', ['a', 'b'], 'rear'))
+        for argument in ('tf_localization:=true', 'paths:=a', 'left_marker_path:=a', 'lane_paths:=true'):
+            config = load('relative_map.launch', argument, 'nodelet:=false', 'name:=mapper')
+            self.assertEqual(command(node(config, 'mapper_adapters')), ('relative_map', 'relative_map_adapters'))
+
+    def test_two_cars_share_a_manager_or_have_one_each(self):
+        one = load('two_cars.launch')
+        self.assertEqual(sorted(n.namespace + n.name for n in one.nodes if n.package == 'nodelet'),
+                         ['/car1/relative_map', '/car2/relative_map', '/two_cars_manager'])
+        each = load('two_cars.launch', 'one_manager:=false')
+        self.assertEqual(sorted(n.namespace + n.name for n in each.nodes if n.package == 'nodelet'),
+                         ['/car%d/relative_map%s' % (i, suffix) for i in (1, 2) for suffix in ('', '_manager')])
+        self.assertEqual(each.params['/car2/relative_map/base_frame'].value, 'car2/base_link')
+
     def test_manager_names_a_running_one(self):
         config = load('relative_map.launch', 'manager:=/car/manager')
         self.assertEqual([command(node) for node in config.nodes],
