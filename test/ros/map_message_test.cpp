@@ -1,6 +1,9 @@
 // A map as a message, and read back from it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "relative_map/pipeline/contract/map_check.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
 #include "ros/engine.hpp"
@@ -192,6 +195,47 @@ TEST(MapMessage, ADefaultMessageIsReadWithoutFault) {
   scraps.navigation_path[1].lane_id = "nobody";
   EXPECT_NO_THROW(to_core(scraps));
   EXPECT_FALSE(core::check_map(to_core(scraps), {}).empty());
+}
+
+TEST(MapMessage, TellsWhereTheVehicleIsAlongEachLane) {
+  const BuiltAndSent map = map_on_three_lanes();
+  ASSERT_EQ(map.sent.navigation_path.size(), 3u);
+  for (const LaneNavigationPath& lane : map.sent.navigation_path) {
+    const std::vector<PathPoint>& points = lane.navigation_path.path.path_point;
+    ASSERT_GT(lane.vehicle_s, 0.0);
+    ASSERT_LT(lane.vehicle_s, points.back().s);
+    const auto after = std::find_if(points.begin(), points.end(),
+                                    [&](const PathPoint& point) { return point.s > lane.vehicle_s; });
+    const auto before = after - 1;
+    const double t = (lane.vehicle_s - before->s) / (after->s - before->s);
+    EXPECT_NEAR(before->x + t * (after->x - before->x), 0.0, 0.06) << "beside the vehicle";
+  }
+}
+
+TEST(MapMessage, HasTheSpeedLimitOfEachLine) {
+  NodeConfig config;
+  config.speed_limits = {{"left", 16.7}, {"right", 8.3}, {"nowhere", 1.0}};
+  config.pipeline.map_param.default_speed_limit = 20.0;
+  Engine engine(config);
+  engine.set_lines(test::three_lanes(Pose2()));
+  engine.drive_to(Pose2(Point2(20.0, 0.0), 0.0), ros::Time(10.0));
+  const MapMsg map = engine.map_at(ros::Time(10.0));
+  ASSERT_EQ(map.hdmap.lane.size(), 3u);
+  EXPECT_EQ(map.hdmap.lane[0].speed_limit, 16.7);
+  EXPECT_EQ(map.hdmap.lane[1].speed_limit, 20.0);
+  EXPECT_EQ(map.hdmap.lane[2].speed_limit, 8.3);
+}
+
+TEST(MapMessage, FillsTheSecondDerivativeOfTheCurvature) {
+  const BuiltAndSent map = map_on_three_lanes();
+  for (const LaneNavigationPath& lane : map.sent.navigation_path) {
+    const std::vector<PathPoint>& points = lane.navigation_path.path.path_point;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      const double rate = (points[i + 1].dkappa - points[i - 1].dkappa) / (points[i + 1].s - points[i - 1].s);
+      ASSERT_DOUBLE_EQ(points[i].ddkappa, rate);
+    }
+    EXPECT_TRUE(std::isfinite(points.front().ddkappa) && std::isfinite(points.back().ddkappa));
+  }
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <limits>
 
+#include "relative_map/pipeline/lanes/lane_path.hpp"
+
 namespace relative_map {
 
 namespace {
@@ -108,9 +110,25 @@ void fill(const core::Lane& lane, Lane& message) {
   message.right_road_sample = to_message(lane.right_road_samples);
 }
 
+/// [m] Where along a path the vehicle, at the origin, is beside it.
+double s_of_vehicle(const core::PathPoints& points) {
+  core::LanePath path;
+  path.points = points;
+  core::locate_vehicle(path);
+  return path.s_at_vehicle;
+}
+
+/// [1/m^3] The derivative of dkappa by s, between the neighbours of a point.
+double rate_of_dkappa(const core::PathPoints& path, std::size_t i) {
+  const core::PathPoint& before = path[i > 0 ? i - 1 : i];
+  const core::PathPoint& after = path[i + 1 < path.size() ? i + 1 : i];
+  return (after.dkappa - before.dkappa) / (after.s - before.s);
+}
+
 void fill(const core::Lane& lane, LaneNavigationPath& message) {
   message.lane_id = lane.id;
   message.remaining_distance = lane.remaining_distance;
+  message.vehicle_s = s_of_vehicle(lane.path);
   message.navigation_path.path_priority = lane.priority;
   message.navigation_path.path.name = lane.name;
   std::vector<PathPoint>& points = message.navigation_path.path.path_point;
@@ -123,6 +141,7 @@ void fill(const core::Lane& lane, LaneNavigationPath& message) {
     to.theta = from.theta;
     to.kappa = from.kappa;
     to.dkappa = from.dkappa;
+    to.ddkappa = rate_of_dkappa(lane.path, i);
     to.s = from.s;
   }
 }
