@@ -59,6 +59,30 @@ class CheckMaps(ReplayTest):
         self.expect(1, "frame_id is 'base_link', not 'rear_axle'", words=('out.bag', '--frame', 'rear_axle'))
         self.expect(2, 'there is no map on /other', words=('out.bag', '--topic', '/other'))
 
+    def test_lost_maps_are_told_and_no_fault(self):
+        self.write_maps(lambda index, map: None)
+        with rosbag.Bag(self.path('out.bag')) as whole, rosbag.Bag(self.path('part.bag'), 'w') as part:
+            for index, (topic, map, time) in enumerate(whole.read_messages()):
+                if index not in (4, 5, 9):
+                    part.write(topic, map, time)
+        self.expect(0, '13 maps, 0 of them empty, 0 rows broken; 3 maps were lost before they were recorded',
+                    words=('part.bag',))
+
+    def test_the_topic_need_not_be_named(self):
+        self.write_maps(lambda index, map: None)
+        for recorded in ('relative_map', '/car1/relative_map', 'car1/relative_map'):
+            with rosbag.Bag(self.path('out.bag')) as whole, rosbag.Bag(self.path('other.bag'), 'w') as other:
+                for _, map, time in whole.read_messages():
+                    other.write(recorded, map, time)
+            self.expect(0, '16 maps', words=('other.bag',))
+            self.expect(0, '16 maps', words=('other.bag', '--topic', '/' + recorded.lstrip('/')))
+            self.expect(0, '16 maps', words=('other.bag', '--topic', recorded.lstrip('/')))
+        with rosbag.Bag(self.path('out.bag')) as whole, rosbag.Bag(self.path('two.bag'), 'w') as two:
+            for _, map, time in whole.read_messages():
+                two.write('/car1/relative_map', map, time)
+                two.write('/car2/relative_map', map, time)
+        self.expect(2, '--topic', '/car1/relative_map', '/car2/relative_map', words=('two.bag',))
+
     def test_what_cannot_be_checked(self):
         self.expect(2, 'check_maps: out.bag: not a readable bag: No such file or directory')
         self.write('out.bag', 'no bag')

@@ -44,8 +44,9 @@ class Monitor(unittest.TestCase):
 
     def test_says_that_there_is_no_map(self):
         self.wait_for_text('no map in the last second\n')
-        self.assertEqual(self.exit_code(), 0)
+        self.assertEqual(self.exit_code(), 2)
         self.assertIn('0 maps, 0 of them empty, 0 contract violations', self.text())
+        self.assertIn('no map ever came on /relative_map', self.text())
 
     def test_says_why_a_map_is_empty(self):
         self.maps.publish(empty_map(1))
@@ -53,11 +54,29 @@ class Monitor(unittest.TestCase):
         self.assertEqual(self.exit_code(), 0)
         self.assertIn('1 maps, 1 of them empty, 0 contract violations', self.text())
 
-    def test_finds_a_map_missing(self):
-        for number in (1, 2, 4):
+    def test_tells_a_lost_map_from_a_fault(self):
+        for number in (1, 2, 4, 5, 9):
             self.maps.publish(empty_map(number))
-        self.wait_for_text('CONTRACT VIOLATION, header: sequence_num is 4 after 2\n')
+        wait_for(lambda: '0 lanes' in self.text(), 'line')
+        self.assertEqual(self.exit_code(), 0)
+        self.assertIn('0 contract violations, 4 lost on the way', self.text())
+
+    def test_finds_a_number_that_goes_back(self):
+        for number in (7, 8, 8, 3):
+            self.maps.publish(empty_map(number))
+        self.wait_for_text('CONTRACT VIOLATION, header: sequence_num is 8 after 8\n')
+        self.wait_for_text('CONTRACT VIOLATION, header: sequence_num is 3 after 8\n')
         self.assertEqual(self.exit_code(), 1)
+
+    def test_ends_when_interrupted_without_a_master(self):
+        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:1')
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            waiting = subprocess.Popen([program('relative_map', 'map_monitor')], stderr=subprocess.PIPE, env=environment,
+                                       universal_newlines=True)
+            self.addCleanup(waiting.kill)
+            self.assertIn('waiting for a master', waiting.stderr.readline())
+            waiting.send_signal(sent)
+            self.assertNotEqual(waiting.wait(DEADLINE), 0)
 
     def test_finds_maps_in_another_frame(self):
         for number in range(5):

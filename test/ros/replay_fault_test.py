@@ -168,7 +168,6 @@ class ReplayFaults(ReplayTest):
         before = self.files()
         self.expect_usage_fault('two bags are needed: IN.bag and OUT.bag')
         self.expect_usage_fault('two bags are needed: IN.bag and OUT.bag', 'in.bag')
-        self.expect_usage_fault('two bags are needed: IN.bag and OUT.bag', 'in.bag', 'out.bag', 'more.bag')
         self.expect_usage_fault('unknown option --rate', 'in.bag', 'out.bag', '--rate', '20')
         self.expect_usage_fault('unknown option -c', 'in.bag', 'out.bag', '-c', 'config.yaml')
         self.expect_usage_fault('--config needs a value', 'in.bag', 'out.bag', '--config')

@@ -3,13 +3,15 @@
 
 import filecmp
 
+import rosbag
 import rospy
 import rostest
 from relative_map.msg import FusionState, MapStatus
 from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
 
 import vehicle_messages as messages
-from replay_support import CAMERA, START, TICKS, ReplayTest, drive, tick_times, transforms
+from replay_support import CAMERA, START, TICKS, ReplayTest, Run, drive, tick_times, transforms
 
 WIDE_TRUCK = """<robot name="truck"><link name="base_link"><collision><origin xyz="3 0 1"/>
 <geometry><box size="8 3.6 2"/></geometry></collision></link></robot>"""
@@ -32,6 +34,77 @@ class Replay(ReplayTest):
         self.expect_contract()
         self.assertIn('16 maps, 0 of them empty', run.output)
         self.assertEqual(run.errors, '')
+
+    def test_a_vehicle_in_a_namespace(self):
+        self.record()
+        self.replay('in.bag', 'plain.bag')
+        for recorded in ('/car1', 'car1'):
+            self.record('car.bag', [(recorded + topic, message, time) for topic, message, time in drive()])
+            self.replay('car.bag', 'out.bag', '--namespace', 'car1')
+            self.expect_same_maps('plain.bag', 'out.bag', '/car1/relative_map')
+        self.replay('in.bag', 'out.bag', '--namespace', '/')
+        self.expect_same_maps('plain.bag', 'out.bag', '/relative_map')
+
+    def test_topics_are_remapped_as_for_the_node(self):
+        names = {'/localization': '/ins/pose', '/chassis': '/can/chassis'}
+        self.record('other.bag', [(names.get(topic, topic), message, time) for topic, message, time in drive()])
+        self.record()
+        self.replay('in.bag', 'plain.bag')
+        self.replay('other.bag', 'out.bag', 'localization:=/ins/pose', '/chassis:=can/chassis', 'relative_map:=/maps')
+        self.expect_same_maps('plain.bag', 'out.bag', '/maps')
+        run = Run(['other.bag', 'new.bag', 'localisation:=/ins/pose'], self.folder)
+        self.assertNotEqual(run.code, 0)
+        self.assertIn('localisation:=/ins/pose remaps nothing', run.errors)
+
+    def test_the_parts_of_a_split_recording_are_one_drive(self):
+        entries = list(drive())
+        self.record('in.bag', entries)
+        parts = [entries[:300], entries[300:600], entries[600:]]  # the lines, which are latched, are in the first one
+        for number, part in enumerate(parts):
+            self.record('part_%d.bag' % number, part)
+        self.replay('in.bag', 'plain.bag')
+        self.replay('part_0.bag', 'part_1.bag', 'part_2.bag', 'out.bag')
+        self.assertTrue(filecmp.cmp(self.path('plain.bag'), self.path('out.bag'), shallow=False))
+        self.replay('part_2.bag', 'part_0.bag', 'part_1.bag', 'out.bag')
+        self.assertTrue(filecmp.cmp(self.path('plain.bag'), self.path('out.bag'), shallow=False))
+
+    def camera_drive(self, topic, transform_at):
+        """A drive whose camera's place comes on `topic` each 0.1 s, from 2 s before the first message on."""
+        for step in range(-20, TICKS + 10):
+            stamp = START + rospy.Duration(0, 100000000) * step if step >= 0 else START - rospy.Duration(
+                0, 100000000) * -step
+            transform = transform_at(step)
+            transform.header.stamp = stamp
+            yield topic, TFMessage([transform]), stamp
+        yield from drive(marker_frame='camera_link')
+
+    def test_a_link_that_stands_still_on_tf_is_as_good_as_static(self):
+        def stands(step):
+            return messages.static_transform('camera_link', 1.8, 1.3)
+
+        self.record('static.bag', self.camera_drive('/tf_static', stands))
+        self.record('tf.bag', self.camera_drive('/tf', stands))
+        self.replay('static.bag', 'plain.bag')
+        self.replay('tf.bag', 'out.bag')
+        self.assertEqual(list(self.maps('out.bag')), tick_times(), 'transforms alone make no maps')
+        self.expect_same_maps('plain.bag', 'out.bag', '/relative_map')
+        self.assertEqual(self.maps('out.bag')[tick_times()[-1]].whole().fusion.source, FusionState.FUSED)
+
+    def test_a_link_that_moves_on_tf_is_none(self):
+        self.record('in.bag', self.camera_drive('/tf', lambda step: messages.static_transform(
+            'camera_link', 1.8 + 0.05 * step, 1.3)))
+        self.replay()
+        last = self.maps()[tick_times()[-1]].whole()
+        self.assertEqual(last.fusion.source, FusionState.NAVIGATION_LINE)
+        self.assertIn("no transform from 'camera_link'", last.status.message)
+
+    def expect_same_maps(self, one, other, topic):
+        """The same maps at the same times, those of `other` on `topic`."""
+        with rosbag.Bag(self.path(one)) as a, rosbag.Bag(self.path(other)) as b:
+            plain = [(time, raw[1]) for _, raw, time in a.read_messages(raw=True)]
+            others = [(time, raw[1]) for name, raw, time in b.read_messages(raw=True) if name == topic]
+        self.assertEqual(len(plain), TICKS)
+        self.assertTrue(plain == others, topic)
 
     def test_two_runs_write_the_same_bytes(self):
         self.record()

@@ -6,9 +6,11 @@
 #include <map>
 #include <string>
 
+#include "master.hpp"
 #include "orderly_end.hpp"
 #include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "relative_map/ros/health/diagnostics.hpp"
+#include "relative_map/ros/health/lost_maps.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
 #include "relative_map/ros/messages/message_check.hpp"
 
@@ -24,7 +26,7 @@ why there is no map, and each violation of the output contract. Runs until it is
   relative_map:=TOPIC   where the maps are
   _base_frame:=FRAME    the body frame they should be in (base_link)
 
-Exit codes: 0 no violation, 1 some.
+Exit codes: 0 no violation, 1 some, 2 no map ever came. A map that got lost on the way is told, and no violation.
 )";
 
 }  // namespace
@@ -40,9 +42,11 @@ class MapMonitor {
 
   /// Prints what was seen in all; the process's exit code.
   int summary() const {
-    std::printf("%zu maps, %zu of them empty, %zu contract violations\n", maps_, empty_, violations_);
+    std::printf("%zu maps, %zu of them empty, %zu contract violations, %zu lost on the way\n", maps_, empty_,
+                violations_, lost_);
     for (const auto& [row, count] : violations_by_row_) std::printf("  %s: %zu\n", row.c_str(), count);
-    return violations_ == 0 ? 0 : 1;
+    if (maps_ == 0) std::printf("no map ever came on %s\n", subscriber_.getTopic().c_str());
+    return maps_ == 0 ? 2 : violations_ == 0 ? 0 : 1;
   }
 
  private:
@@ -51,6 +55,7 @@ class MapMonitor {
     fresh_ = true;
     ++maps_;
     if (last_.lanes.empty()) ++empty_;
+    lost_ += note_lost(message, context_);
     for (const core::Violation& violation : check_message(message, context_)) {
       ++violations_;
       if (++violations_by_row_[violation.row] <= 3) {
@@ -90,7 +95,7 @@ class MapMonitor {
   core::MapContext context_;
   core::RelativeMap last_;
   bool fresh_ = false;
-  std::size_t maps_ = 0, empty_ = 0, violations_ = 0;
+  std::size_t maps_ = 0, empty_ = 0, violations_ = 0, lost_ = 0;
   std::map<std::string, std::size_t> violations_by_row_;
   ros::Subscriber subscriber_;
   ros::WallTimer timer_;
@@ -104,6 +109,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   ros::init(argc, argv, "map_monitor", ros::init_options::AnonymousName);
+  relative_map::wait_for_master();
   relative_map::end_in_order();
   const relative_map::MapMonitor monitor{ros::NodeHandle(), ros::NodeHandle("~")};
   ros::spin();

@@ -2,7 +2,9 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -20,28 +22,40 @@
 #include "relative_map/ros/health/diagnostics.hpp"
 #include "relative_map/ros/map/map_engine.hpp"
 #include "relative_map/ros/setup/line_loader.hpp"
+#include "replay_inputs.hpp"
 #include "whole_bag.hpp"
 
 namespace relative_map {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: rosrun relative_map replay IN.bag OUT.bag [--config FILE] [--urdf FILE]\n"
+    "usage: rosrun relative_map replay IN.bag... OUT.bag [--config FILE] [--urdf FILE] [--namespace NS] "
+    "[TOPIC:=OTHER ...]\n"
     "\n"
-    "Plays the inputs in IN.bag (navigation, localization, chassis, perception/lane_markers, tf_static) "
+    "Plays the inputs in IN.bag (navigation, localization, chassis, perception/lane_markers, tf, tf_static) "
     "through\n"
-    "the map's pipeline and writes the maps to OUT.bag on /relative_map, each at its tick's time.\n"
+    "the map's pipeline and writes the maps to OUT.bag on /relative_map, each at its tick's time. Several "
+    "bags "
+    "are the\n"
+    "parts of one recording.\n"
+    "\n"
+    "The same bag gives the same maps, byte for byte, each time. They are not those of the drive itself: "
+    "there, "
+    "ticks\n"
+    "fell at other moments and messages came in between; of a pose that both made a map for, the maps are "
+    "equal.\n"
     "\n"
     "  --config FILE   parameters as in config/relative_map.yaml; its navigation_lines are driven on until "
     "IN.bag "
     "has others\n"
     "  --urdf FILE     the vehicle, for its footprint\n"
+    "  --namespace NS  of the vehicle in IN.bag, e.g. /car1; its maps go to /car1/relative_map\n"
+    "  TOPIC:=OTHER    remaps an input, relative_map, /tf or /tf_static, as for the node\n"
     "\n"
     "A pause of more than a minute without input, as where a clock was set, gets maps for its first minute "
     "only.\n";
 
 constexpr double kLongestPause = 60.0;  // [s] without input that is filled with empty maps
-const std::set<std::string> kTopics = {"/relative_map"};
 
 /// [s] Exact, and of any size: ros::Duration holds 68 years, and throws where a stamp is scrap.
 double seconds_between(const ros::Time& from, const ros::Time& to) {
@@ -49,15 +63,26 @@ double seconds_between(const ros::Time& from, const ros::Time& to) {
 }
 
 struct Arguments {
-  std::string input, output, config, urdf;
+  std::vector<std::string> inputs;
+  std::string output, config, urdf, name_space;
+  std::vector<std::string> remappings;
 };
 
 Arguments parse(const std::vector<std::string>& words) {
-  const CommandLine line(words, {"--config", "--urdf"});
-  if (line.files().size() != 2) throw UsageError("two bags are needed: IN.bag and OUT.bag");
-  Arguments arguments{line.files()[0], line.files()[1], line.text("--config"), line.text("--urdf")};
+  const CommandLine line(words, {"--config", "--urdf", "--namespace"});
+  Arguments arguments;
+  std::vector<std::string> bags;
+  for (const std::string& word : line.files()) {
+    (word.find(":=") == std::string::npos ? bags : arguments.remappings).push_back(word);
+  }
+  if (bags.size() < 2) throw UsageError("two bags are needed: IN.bag and OUT.bag");
+  arguments.output = bags.back();
+  arguments.inputs.assign(bags.begin(), bags.end() - 1);
+  arguments.config = line.text("--config");
+  arguments.urdf = line.text("--urdf");
+  arguments.name_space = line.text("--namespace");
   try {
-    core::expect_not_among(arguments.output, {arguments.input});
+    core::expect_not_among(arguments.output, arguments.inputs);
   } catch (const std::runtime_error&) {
     throw UsageError("IN.bag and OUT.bag are the same file");
   }
@@ -73,8 +98,12 @@ std::string read_urdf(const std::string& path) {
 
 class Replay {
  public:
-  Replay(const NodeConfig& config, const rosbag::Bag& input, WholeBag& output)
-      : config_(config), input_(input), output_(output), engine_(config, link_transforms(transforms_)) {}
+  Replay(const NodeConfig& config, const ReplayBags& inputs, const InputTopics& topics, WholeBag& output)
+      : config_(config),
+        inputs_(inputs),
+        topics_(topics),
+        output_(output),
+        engine_(config, link_transforms(transforms_)) {}
 
   /// Drives on these until the bag has others.
   void set_lines(const std::shared_ptr<const core::NavigationLines>& lines) {
@@ -82,18 +111,17 @@ class Replay {
   }
 
   void run() {
-    load_static_transforms(input_, transforms_);
-    rosbag::View view(input_, [](const rosbag::ConnectionInfo* connection) {
-      const std::string topic = frame_name(connection->topic);
-      return topic == "navigation" || topic == "localization" || topic == "chassis" ||
-             topic == "perception/lane_markers";
-    });
-    if (view.size() == 0) {
-      throw std::runtime_error(
-          "it has none of the topics /navigation, /localization, /chassis, /perception/lane_markers");
-    }
-    const ros::Time start = view.getBeginTime();
-    const double length = seconds_between(start, view.getEndTime());
+    load_static_transforms();
+    rosbag::View inputs, all;
+    const auto is_input = [this](const std::string& topic) { return topics_.reads(topic); };
+    const auto is_wanted = [this](const std::string& topic) {
+      return topics_.reads(topic) || topics_.is_tf(topic);
+    };
+    inputs_.query(is_input, inputs);
+    inputs_.query(is_wanted, all);
+    if (inputs.size() == 0) throw std::runtime_error("it has none of the topics " + topics_.listed());
+    const ros::Time start = inputs.getBeginTime(), end = inputs.getEndTime();
+    const double length = seconds_between(start, end);
     ProgressBar progress;
     std::uint64_t tick = 0;
     // Computed from the start each time: a sum of periods would drift.
@@ -103,11 +131,19 @@ class Replay {
       return ros::Time().fromNSec(start.toNSec() + since_start);
     };
     ros::Time last = start;
-    for (const rosbag::MessageInstance& message : view) {
+    for (const rosbag::MessageInstance& message : all) {
       const ros::Time now = message.getTime();
-      if (seconds_between(last, now) > kLongestPause) {
-        const ros::Time end = last + ros::Duration(kLongestPause);
-        for (; tick_time() < end; ++tick) publish(tick_time());
+      const bool pauses = seconds_between(last, now) > kLongestPause;
+      if (!is_input(message.getTopic())) {  // transforms alone make no maps
+        if (now > start && now <= end && !pauses) {
+          for (; tick_time() < now; ++tick) publish(tick_time());
+        }
+        deliver(message);
+        continue;
+      }
+      if (pauses) {
+        const ros::Time last_map = last + ros::Duration(kLongestPause);
+        for (; tick_time() < last_map; ++tick) publish(tick_time());
         std::fprintf(stderr, "no input for %.0f s from %.3f on: only the first %.0f s of them get maps\n",
                      seconds_between(last, now), last.toSec(), kLongestPause);
         tick = static_cast<std::uint64_t>(seconds_between(start, now) * config_.rate);  // on the same grid
@@ -117,7 +153,7 @@ class Replay {
       last = now;
       progress.show(length > 0.0 ? seconds_between(start, now) / length : 1.0);
     }
-    for (; tick_time() <= view.getEndTime(); ++tick) publish(tick_time());
+    for (; tick_time() <= end; ++tick) publish(tick_time());
   }
 
   void print_summary(double seconds) const {
@@ -126,6 +162,18 @@ class Replay {
   }
 
  private:
+  /// They hold from the beginning on, whenever they were recorded.
+  void load_static_transforms() {
+    rosbag::View view;
+    const auto is_static = [this](const std::string& topic) { return topics_.is_static_tf(topic); };
+    inputs_.query(is_static, view);
+    for (const rosbag::MessageInstance& instance : view) {
+      if (const auto message = instance.instantiate<tf2_msgs::TFMessage>()) {
+        add_transforms(*message, true, transforms_);
+      }
+    }
+  }
+
   void deliver(const rosbag::MessageInstance& message) {
     const ros::Time received = message.getTime();
     if (const auto lines = message.instantiate<NavigationInfo>()) {
@@ -138,6 +186,8 @@ class Replay {
       engine_.on_chassis(chassis, received);
     } else if (const auto markers = message.instantiate<LaneMarkers>()) {
       engine_.on_lane_markers(markers, received);
+    } else if (const auto transforms = message.instantiate<tf2_msgs::TFMessage>()) {
+      add_transforms(*transforms, false, transforms_);
     } else if (mistyped_.insert({message.getTopic(), message.getDataType()}).second) {
       std::cerr << message.getTopic() << " has type " << message.getDataType()
                 << ", which is not read from it\n";
@@ -147,7 +197,7 @@ class Replay {
   void publish(const ros::Time& now) {
     const MapMsgPtr map = engine_.tick(now);
     if (!map) return;
-    output_.write("/relative_map", now, *map);
+    output_.write(topics_.resolved("relative_map"), now, *map);
     ++maps_;
     if (map->status.code == MapStatus::OK) return;
     ++empty_;
@@ -155,7 +205,8 @@ class Replay {
   }
 
   const NodeConfig& config_;
-  const rosbag::Bag& input_;
+  const ReplayBags& inputs_;
+  const InputTopics& topics_;
   WholeBag& output_;
   tf2::BufferCore transforms_;
   MapEngine engine_;
@@ -171,7 +222,8 @@ std::shared_ptr<const core::NavigationLines> configured_lines(const std::string&
       config_file.empty() ? std::vector<std::string>() : line_files(config_file);
   if (files.empty()) return nullptr;
   std::vector<std::string> notes;
-  const auto lines = MapEngine::prepare(to_message(load_lines(files, "", notes)), config.pipeline);
+  const auto lines =
+      MapEngine::prepare(to_message(load_lines(files, config.map_frame, notes)), config.pipeline);
   for (const std::string& note : notes) std::cerr << note << "\n";
   expect_all_loaded(*lines, files.size());
   return lines;
@@ -184,18 +236,19 @@ int run(const std::vector<std::string>& words) {
   const NodeConfig config = make_node_config(parameters, urdf);
   const auto lines = configured_lines(arguments.config, config);
 
-  expect_bag_writable(arguments.output, kTopics);
-  rosbag::Bag input;
-  open_bag(arguments.input, input);
-  WholeBag output(arguments.output, kTopics);
-  Replay replay(config, input, output);
+  const InputTopics topics(arguments.name_space, arguments.remappings);
+  const std::set<std::string> written = {topics.resolved("relative_map")};
+  expect_bag_writable(arguments.output, written);
+  const ReplayBags inputs(arguments.inputs);
+  WholeBag output(arguments.output, written);
+  Replay replay(config, inputs, topics, output);
   if (lines) replay.set_lines(lines);
   const auto start = std::chrono::steady_clock::now();
   try {
     replay.run();
     output.close();
   } catch (const std::exception& fault) {
-    throw std::runtime_error(arguments.input + ": can't be replayed: " + fault.what());
+    throw std::runtime_error(arguments.inputs.front() + ": can't be replayed: " + fault.what());
   }
   replay.print_summary(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return 0;
