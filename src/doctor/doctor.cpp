@@ -8,6 +8,8 @@ namespace relative_map::doctor {
 
 namespace {
 
+constexpr std::size_t kLongestLine = 600;  // characters
+
 struct Rule {
   const char* name;
   Findings (*look)(const Evidence&);
@@ -47,6 +49,8 @@ constexpr Rule kRules[] = {
     {"a_line_runs_along", a_line_runs_along},
     {"markers_are_not_mirrored", markers_are_not_mirrored},
     {"markers_make_a_lane", markers_make_a_lane},
+    {"marker_quality_is_a_share", marker_quality_is_a_share},
+    {"marker_curvature_is_halved", marker_curvature_is_halved},
     {"maps_have_lanes", maps_have_lanes},
     {"maps_keep_the_contract", maps_keep_the_contract},
     {"maps_come_often_enough", maps_come_often_enough},
@@ -85,6 +89,12 @@ std::string to_line(const Finding& finding) {
       line = "WRONG: " + finding.what + " -> mend: " + finding.mend;
   }
   std::replace(line.begin(), line.end(), '\n', ' ');  // what others have to say may have several lines
+  if (line.size() > kLongestLine) {
+    std::size_t end = kLongestLine - 3;
+    while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U)
+      --end;  // within a UTF-8 character
+    line = line.substr(0, end) + "...";
+  }
   return line;
 }
 

@@ -134,7 +134,7 @@ Evidence::Evidence(const Observations& observations)
       continue;
     }
     const std::string link = link_of(message->child_frame_id, base_frame);
-    const auto link_from_base = seen.transforms(link, base_frame);
+    const auto link_from_base = seen.transforms(link, base_frame, message->header.stamp);
     const bool carry = link_from_base && link != base_frame;
     const auto state = core::make_vehicle_state(
         carry ? core::carry_to_base(checked.input, *link_from_base) : checked.input, std::nullopt);

@@ -20,7 +20,7 @@ std::optional<Eigen::Isometry3d> base_from_marker_frame(const Observations& seen
   if (seen.lane_markers.messages.empty()) return std::nullopt;
   const std::string& base_frame = seen.config.pipeline.base_frame;
   const LaneMarkers& markers = *seen.lane_markers.messages.back().message;
-  return seen.transforms(base_frame, link_of(markers.header.frame_id, base_frame));
+  return seen.transforms(base_frame, link_of(markers.header.frame_id, base_frame), markers.header.stamp);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ Findings localized_link_is_known(const Evidence& evidence) {
   const std::string link = link_of(seen.localization.messages.back().message->child_frame_id, base_frame);
   if (link == base_frame)
     return {ok(seen.localization.topic.name + " is about " + quoted(link) + ", the body frame")};
-  if (seen.transforms(link, base_frame)) {
+  if (seen.transforms(link, base_frame, seen.localization.messages.back().message->header.stamp)) {
     return {ok(seen.localization.topic.name + " is about link " + quoted(link) + ", whose place in " +
                quoted(base_frame) + " is known")};
   }

@@ -74,12 +74,12 @@ Findings lines_are_usable(const Evidence& evidence) {
   const std::string mend = "send lines of two or more distinct points with finite x and y";
   if (sent == 0) return {wrong(topic + " holds no line: navigation_path is empty", mend)};
   if (usable < sent) {
-    return {wrong(text(topic, ": ", usable, " of ", sent, " lines can be used: ", list(faults)), mend)};
+    return {wrong(text(topic, ": ", usable, " of ", sent, " lines can be used: ", some(faults)), mend)};
   }
   Findings findings = {ok(text(topic, " holds ", sent, sent == 1 ? " line" : " lines", " that can be used"))};
   if (!faults.empty()) {
     findings.push_back(
-        note(topic + ": " + list(faults), "the map node goes on with that; send lines that need no repair"));
+        note(topic + ": " + some(faults), "the map node goes on with that; send lines that need no repair"));
   }
   return findings;
 }

@@ -114,6 +114,8 @@ Findings a_line_runs_along(const Evidence& evidence);
 
 Findings markers_are_not_mirrored(const Evidence& evidence);
 Findings markers_make_a_lane(const Evidence& evidence);
+Findings marker_quality_is_a_share(const Evidence& evidence);
+Findings marker_curvature_is_halved(const Evidence& evidence);
 
 Findings maps_have_lanes(const Evidence& evidence);
 Findings maps_keep_the_contract(const Evidence& evidence);

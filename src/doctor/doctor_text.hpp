@@ -54,4 +54,17 @@ std::string list(const Words& words) {
   return result;
 }
 
+/// The first few of them: nobody reads a line of a thousand characters.
+template <class Words>
+std::string some(const Words& words, std::size_t most = 3) {
+  if (words.size() <= most) return list(words);
+  std::string result;
+  std::size_t count = 0;
+  for (const std::string& word : words) {
+    if (count++ == most) break;
+    result += word + ", ";
+  }
+  return result + "and " + std::to_string(words.size() - most) + " more";
+}
+
 }  // namespace relative_map::doctor

@@ -16,12 +16,18 @@ struct Role {
   const char* purpose;
 };
 
+/// Lines may come by the parameter or the service too.
+bool has_lines_of_files(const Observations& seen) {
+  return seen.lines_in_use.value_or(0) > 0 && seen.navigation.messages.empty();
+}
+
 std::vector<Role> roles(const Observations& seen) {
   const bool lines = seen.config.pipeline.navigation_lane.lane_source == core::LaneSource::kOfflineGenerated;
+  const bool message_needed = lines && !has_lines_of_files(seen);
   return {
-      {seen.navigation.topic, seen.navigation.messages.size(), lines, "the lines to drive on"},
+      {seen.navigation.topic, seen.navigation.messages.size(), message_needed, "the lines to drive on"},
       {seen.localization.topic, seen.localization.messages.size(), true, "the pose of the vehicle"},
-      {seen.chassis.topic, seen.chassis.messages.size(), true, "speed and gear"},
+      {seen.chassis.topic, seen.chassis.messages.size(), false, "speed and gear"},
       {seen.lane_markers.topic, seen.lane_markers.messages.size(), !lines, "the paint that a camera sees"}};
 }
 
@@ -42,7 +48,7 @@ std::string relative_name(const Topic& topic) {
 
 std::string remap_hint(const Topic& topic) {
   if (topic.elsewhere.empty()) return "";
-  return "; " + list(topic.elsewhere) + " carries this type: if that is meant, remap " +
+  return "; " + some(topic.elsewhere) + " carries this type: if that is meant, remap " +
          relative_name(topic) + ":=" + topic.elsewhere.front() + " for the map node and for the doctor";
 }
 
@@ -75,6 +81,11 @@ Findings topics_have_publishers(const Evidence& evidence) {
   Findings findings;
   for (const Role& role : roles(evidence.seen)) {
     if (!role.topic.publishers.empty()) continue;
+    if (&role.topic == &evidence.seen.navigation.topic && has_lines_of_files(evidence.seen)) {
+      findings.push_back(ok(text("the map node drives on ", *evidence.seen.lines_in_use,
+                                 " lines from files (its parameter, or the service)")));
+      continue;
+    }
     const std::string what = "nobody publishes " + role.topic.name + " (" + role.purpose + ")";
     const std::string mend = "start the node that publishes " + role.topic.type + remap_hint(role.topic);
     findings.push_back(role.needed ? wrong(what, mend)
@@ -180,6 +191,7 @@ Findings messages_arrive(const Evidence& evidence) {
                              mend));
   };
   for (const Role& role : roles(evidence.seen)) {
+    if (&role.topic == &evidence.seen.navigation.topic && has_lines_of_files(evidence.seen)) continue;
     look(role.topic, role.received,
          &role.topic == &evidence.seen.navigation.topic
              ? "publish it latched, so that those who come later get it too, and publish it once"

@@ -16,7 +16,8 @@ using Places = std::map<std::string, Eigen::Isometry3d>;
 
 inline LinkTransforms transforms_of(Places places) {
   places["base_link"] = Eigen::Isometry3d::Identity();
-  return [places](const std::string& target, const std::string& source) -> std::optional<Eigen::Isometry3d> {
+  return [places](const std::string& target, const std::string& source,
+                  const ros::Time&) -> std::optional<Eigen::Isometry3d> {
     const auto to = places.find(target), from = places.find(source);
     if (to == places.end() || from == places.end()) return std::nullopt;
     return to->second.inverse() * from->second;

@@ -37,16 +37,6 @@ std::vector<Fault> node_faults() {
 std::vector<Fault> topic_faults() {
   return {
       {"topics_have_publishers",
-       "NoChassis",
-       [](Observations& seen) {
-         seen.chassis.topic.publishers.clear();
-         seen.chassis.messages.clear();
-         seen.chassis.topic.elsewhere = {"/can/chassis"};
-       },
-       "nobody publishes /chassis",
-       "remap chassis:=/can/chassis",
-       {}},
-      {"topics_have_publishers",
        "NoNavigation",
        [](Observations& seen) {
          seen.navigation.topic.publishers.clear();

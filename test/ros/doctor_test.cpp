@@ -72,6 +72,51 @@ INSTANTIATE_TEST_SUITE_P(Doctor, DoctorFault, testing::ValuesIn(all_faults()),
                            return std::string(info.param.name);
                          });
 
+/// A vehicle may be without it: the speed is then localization's.
+TEST(Doctor, NotesThatThereIsNoChassis) {
+  Observations seen = healthy_system();
+  seen.chassis.topic.publishers.clear();
+  seen.chassis.messages.clear();
+  seen.chassis.topic.elsewhere = {"/can/chassis"};
+  EXPECT_THAT(findings_of(seen, Severity::kWrong), IsEmpty()) << lines_of(diagnose(seen));
+  EXPECT_THAT(findings_of(seen, Severity::kNote),
+              Contains(AllOf(Field(&Finding::what, HasSubstr("nobody publishes /chassis")),
+                             Field(&Finding::mend, HasSubstr("remap chassis:=/can/chassis")))));
+}
+
+TEST(Doctor, KnowsLinesThatCameFromFiles) {
+  for (const bool somebody_could : {false, true}) {
+    Observations seen = healthy_system();
+    if (!somebody_could) seen.navigation.topic.publishers.clear();
+    seen.navigation.messages.clear();
+    seen.lines_in_use = 2;
+    EXPECT_THAT(findings_of(seen, Severity::kWrong), IsEmpty()) << lines_of(diagnose(seen));
+    seen.lines_in_use = 0;
+    EXPECT_THAT(rules_of(findings_of(seen, Severity::kWrong)), testing::Not(IsEmpty()));
+  }
+}
+
+TEST(Doctor, TellsCurvaturesThatAreRight) {
+  Observations seen = healthy_system();
+  change(seen.lane_markers, [](LaneMarkers& markers) {
+    markers.left_lane_marker.c2_curvature = markers.right_lane_marker.c2_curvature = 0.005;
+  });
+  EXPECT_THAT(findings_of(seen, Severity::kWrong), IsEmpty()) << lines_of(diagnose(seen));
+  EXPECT_THAT(lines_of(diagnose(seen)), HasSubstr("curvatures are those of the vehicle's way"));
+}
+
+TEST(Doctor, SaysNothingInAThousandCharacters) {
+  Observations seen = healthy_system();
+  NavigationInfo info = *seen.navigation.messages[0].message;
+  for (int i = 0; i < 60; ++i) {
+    info.navigation_path.push_back(
+        relative_map::test::navigation_path({{1e9, 1e9}}, "bad_" + std::to_string(i), 1));
+  }
+  seen.navigation.messages[0].message = relative_map::test::shared(info);
+  seen.config_fault = std::string(3000, 'x');
+  for (const Finding& finding : diagnose(seen)) EXPECT_LE(to_line(finding).size(), 600u) << to_line(finding);
+}
+
 TEST(Doctor, FindsNothingWrongWithAHealthySystem) {
   const Observations seen = healthy_system();
   EXPECT_THAT(findings_of(seen, Severity::kWrong), IsEmpty()) << lines_of(diagnose(seen));

@@ -245,6 +245,27 @@ std::vector<Fault> marker_faults() {
        "of 50 messages 50 make no lane",
        "fill view_range",
        {}},
+      {"marker_quality_is_a_share",
+       "QualityFromZeroToThree",
+       [](Observations& seen) {
+         change(seen.lane_markers, [](LaneMarkers& markers) {
+           markers.left_lane_marker.quality = 3.0;
+           markers.right_lane_marker.quality = 2.0;
+         });
+       },
+       "quality is up to 3.00, but must lie from 0 to 1",
+       "divide it by the greatest value",
+       {}},
+      {"marker_curvature_is_halved",
+       "CurvatureNotHalved",
+       [](Observations& seen) {
+         change(seen.lane_markers, [](LaneMarkers& markers) {
+           markers.left_lane_marker.c2_curvature = markers.right_lane_marker.c2_curvature = 0.01;
+         });
+       },
+       "c2_curvature is 1.0 times the curvature of the vehicle's way",
+       "half the curvature",
+       {}},
   };
 }
 

@@ -7,6 +7,7 @@
 #include <ros/time.h>
 
 #include <boost/shared_ptr.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,9 @@ struct Observations {
   double listened = 0.0;        ///< [s] by the wall clock
   ros::Time begin, end;         ///< of listening, by ROS time
 
+  /// How many lines the map node says in /diagnostics that it drives on, wherever they came from; none: it
+  /// did not say.
+  std::optional<std::size_t> lines_in_use;
   Input<NavigationInfo> navigation;
   Input<LocalizationEstimate> localization;
   Input<Chassis> chassis;

@@ -1,23 +1,26 @@
 // Listens to a live system for some seconds and says what is wrong with it and how to mend it.
 #include "relative_map/doctor/doctor.hpp"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
 #include <tf2_ros/transform_listener.h>
 #include <topic_tools/shape_shifter.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <stdexcept>
 
 #include "doctor_master.hpp"
 #include "relative_map/ros/messages/message_check.hpp"
+#include "relative_map/ros/setup/reconfigure.hpp"
 
 namespace relative_map {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: rosrun relative_map doctor [--duration S] [_node:=NAME] [TOPIC:=OTHER ...]\n"
+    "usage: rosrun relative_map doctor [--duration S] [--namespace NS] [_node:=NAME] [TOPIC:=OTHER ...]\n"
     "\n"
     "Listens beside a running system and says in plain sentences what is wrong with it and how to mend it.\n"
     "Exit code 0: all is well; 1: something is wrong; 2: bad arguments, or no master.\n"
@@ -25,6 +28,8 @@ constexpr const char* kUsage =
     "  --duration S     how long to listen [s], from 1 to 600 (default 5); the vehicle should move: "
     "headings\n"
     "                   and speeds are told by motion\n"
+    "  --namespace NS   where the vehicle's topics and its map node are, e.g. /car1 (default: that of "
+    "ROS_NAMESPACE)\n"
     "  _node:=NAME      name of the map node, to read its parameters (default relative_map)\n"
     "  TOPIC:=OTHER     remaps navigation, localization, chassis, perception/lane_markers or relative_map,\n"
     "                   as for the map node\n";
@@ -32,6 +37,7 @@ constexpr const char* kUsage =
 struct Arguments {
   bool help = false;
   double duration = 5.0;  ///< [s]
+  std::string name_space;
 };
 
 double parse_duration(const std::string& word) {
@@ -55,6 +61,9 @@ Arguments parse(const std::vector<std::string>& words) {
     } else if (words[i] == "--duration") {
       if (i + 1 == words.size()) throw std::runtime_error("--duration needs a value");
       arguments.duration = parse_duration(words[++i]);
+    } else if (words[i] == "--namespace") {
+      if (i + 1 == words.size()) throw std::runtime_error("--namespace needs a value");
+      arguments.name_space = words[++i];
     } else {
       throw std::runtime_error("unexpected argument '" + words[i] + "'; see --help");
     }
@@ -65,13 +74,14 @@ Arguments parse(const std::vector<std::string>& words) {
 /// Gathers observations on one thread.
 class Listener {
  public:
-  Listener(ros::NodeHandle nh, ros::NodeHandle private_nh) : nh_(nh), transform_listener_(transforms_) {
+  Listener(ros::NodeHandle nh, ros::NodeHandle private_nh) : nh_(nh), transform_listener_(transforms_, nh) {
     read_parameters(private_nh.param<std::string>("node", "relative_map"));
     seen_.transforms = link_transforms(transforms_);
     listen("navigation", seen_.navigation);
     listen("localization", seen_.localization);
     listen("chassis", seen_.chassis);
     listen("perception/lane_markers", seen_.lane_markers);
+    listen_to_diagnostics();
     seen_.map_topic.name = nh_.resolveName("relative_map");
     subscribers_.push_back(
         nh_.subscribe<MapMsg>("relative_map", kQueue, [this](const MapMsgConstPtr& map) { on_map(*map); }));
@@ -80,6 +90,7 @@ class Listener {
   /// What is seen in `duration` [s] of the wall clock: simulated time may stand still.
   const doctor::Observations& listen_for(double duration) {
     seen_.simulated_time = ros::Time::isSimTime();
+    wait_for_simulated_time();
     const ros::WallTime begin = ros::WallTime::now();
     const ros::WallTime end = begin + ros::WallDuration(duration);
     const ros::WallTime settled = begin + ros::WallDuration(kSettling);
@@ -88,6 +99,7 @@ class Listener {
       if (seen_.begin.isZero() && ros::WallTime::now() > settled) seen_.begin = ros::Time::now();
     }
     seen_.end = ros::Time::now();
+    read_reconfigured();  // once more: it may have been changed in the meantime
     seen_.listened = (ros::WallTime::now() - begin).toSec();
     ask_master();
     look_at_definitions();
@@ -96,8 +108,9 @@ class Listener {
 
  private:
   static constexpr uint32_t kQueue = 1000;
-  static constexpr double kSettling = 0.2;   // [s] until /clock has come, if there is one
-  static constexpr double kProbeTime = 1.0;  // [s] for another look at topics on which nothing came
+  static constexpr double kSettling = 0.2;     // [s] until /clock has come, if there is one
+  static constexpr double kFirstClock = 10.0;  // [s] for the first /clock
+  static constexpr double kProbeTime = 1.0;    // [s] for another look at topics on which nothing came
 
   template <class Message>
   void listen(const std::string& name, doctor::Input<Message>& input) {
@@ -112,16 +125,47 @@ class Listener {
     seen_.node = nh_.resolveName(node);
     XmlRpc::XmlRpcValue tree;
     seen_.node_has_parameters = nh_.getParam(seen_.node, tree);
-    std::string urdf;
-    nh_.getParam("robot_description", urdf);
+    std::string key, urdf;
+    if (ros::NodeHandle(seen_.node).searchParam("robot_description", key)) nh_.getParam(key, urdf);
     try {
       seen_.config = make_node_config(flatten(tree), urdf);
     } catch (const std::runtime_error& fault) {
       seen_.config_fault = fault.what();
     }
-    // This one may have been changed since.
-    nh_.getParam(seen_.node + "/" + kReconfigureNamespace + "/max_distance_to_navigation_line",
-                 seen_.config.pipeline.navigation_lane.max_distance_to_navigation_line);
+    read_reconfigured();
+  }
+
+  /// What was changed while driving counts, and not what the node was started with.
+  void read_reconfigured() {
+    RelativeMapConfig view = reconfigure_view(seen_.config.pipeline);
+    view.__fromServer__(ros::NodeHandle(seen_.node + "/" + kReconfigureNamespace));
+    seen_.config.pipeline = with_request(seen_.config.pipeline, view);
+  }
+
+  /// The map node says there how many lines it has: they may come from files, and no message tells of them.
+  void listen_to_diagnostics() {
+    subscribers_.push_back(nh_.subscribe<diagnostic_msgs::DiagnosticArray>(
+        "/diagnostics", kQueue, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& array) {
+          for (const diagnostic_msgs::DiagnosticStatus& status : array->status) {
+            if (status.name != seen_.node.substr(1) + ": relative map" &&
+                status.name != seen_.node + ": relative map") {
+              continue;
+            }
+            for (const diagnostic_msgs::KeyValue& value : status.values) {
+              if (value.key == "navigation lines")
+                seen_.lines_in_use = std::strtoul(value.value.c_str(), nullptr, 10);
+            }
+          }
+        }));
+  }
+
+  /// A simulation or a bag may begin after the doctor.
+  void wait_for_simulated_time() {
+    if (!seen_.simulated_time) return;
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kFirstClock);
+    while (ros::ok() && ros::WallTime::now() < end && ros::Time::now().isZero()) {
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
+    }
   }
 
   void on_map(const MapMsg& map) {
@@ -214,7 +258,7 @@ int run(int argc, char** argv) {
     throw std::runtime_error("there is no master at " + ros::master::getURI() +
                              ": start the system first, or set ROS_MASTER_URI");
   }
-  const ros::NodeHandle nh, private_nh("~");
+  const ros::NodeHandle nh(arguments.name_space), private_nh("~");
   Listener listener(nh, private_nh);
   return report(doctor::diagnose(listener.listen_for(arguments.duration)));
 }
