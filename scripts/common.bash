@@ -13,19 +13,19 @@ export ROS_LOG_DIR=$build_root/log/ros
 unset ROS_HOSTNAME               # would win over ROS_IP
 
 if [[ -f /opt/ros/noetic/setup.bash ]]; then
-  build_packages=(g++ make cmake pkg-config libboost-dev libboost-program-options-dev libeigen3-dev libyaml-cpp-dev
-    nlohmann-json3-dev libgeographic-dev libtinyxml2-dev
+  build_packages=(g++ make cmake pkg-config python3-setuptools libboost-dev libboost-program-options-dev libeigen3-dev
+    libyaml-cpp-dev nlohmann-json3-dev libgeographic-dev libtinyxml2-dev
     ros-noetic-{catkin,diagnostic-msgs,diagnostic-updater,dynamic-reconfigure,geometry-msgs,message-generation}
     ros-noetic-{message-runtime,nav-msgs,nodelet,pluginlib,rosbag-storage,roscpp,sensor-msgs,std-msgs,std-srvs,tf2}
     ros-noetic-{tf2-msgs,tf2-ros,topic-tools,urdf,visualization-msgs,robot-state-publisher,rosbash,roslaunch,rosnode}
     ros-noetic-{rosservice,rostopic})
   rviz_packages=(ros-noetic-rviz)
-  plot_packages=(ros-noetic-rosbag python3-matplotlib)
+  plot_packages=(ros-noetic-rosbag python3-matplotlib python3-numpy)
   test_packages=(libgtest-dev libgmock-dev libbenchmark-dev ros-noetic-{rosbag,rostest} python3-matplotlib clang-format
     catkin-lint)
 else
-  build_packages=(g++ make cmake pkg-config catkin libboost-dev libboost-program-options-dev libeigen3-dev libyaml-cpp-dev
-    nlohmann-json3-dev libgeographiclib-dev libtinyxml2-dev
+  build_packages=(g++ make cmake pkg-config catkin python3-setuptools libboost-dev libboost-program-options-dev libeigen3-dev
+    libyaml-cpp-dev nlohmann-json3-dev libgeographiclib-dev libtinyxml2-dev
     libdiagnostic-msgs-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev
     python3-dynamic-reconfigure libgeometry-msgs-dev ros-geometry-msgs ros-message-generation ros-message-runtime
     libnav-msgs-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev librosbag-storage-dev libroscpp-dev
@@ -34,7 +34,7 @@ else
     python3-{diagnostic,geometry,nav,sensor,tf2,visualization}-msgs python3-std-srvs rosbash
     ros-robot-state-publisher python3-{roslaunch,rosnode,rosservice,rostopic})
   rviz_packages=(rviz)
-  plot_packages=(python3-rosbag python3-matplotlib)
+  plot_packages=(python3-rosbag python3-matplotlib python3-numpy)
   test_packages=(libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev python3-nodelet python3-rosbag
     python3-rostest librostest-dev python3-matplotlib clang-format catkin-lint)
 fi

@@ -4,7 +4,6 @@
 import math
 import os
 import subprocess
-import sys
 
 import numpy
 import roslib.packages
@@ -12,14 +11,12 @@ import rosbag
 import rospy
 import rostest
 from matplotlib import image
+from relative_map import bags
 from relative_map.msg import FusionState, MapMsg, MapStatus
 from std_msgs.msg import String
 
 import vehicle_messages
 from replay_support import START, ReplayTest
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '../../scripts'))
-import map_bag  # noqa: E402
 
 PICTURES = ('bird_view.png', 'curves.png', 'frames.png')
 # On white: lanes of priority 0 and 1, a curve, and where there was no map.
@@ -90,8 +87,8 @@ class PlotMaps(ReplayTest):
             entries.append(('/localization', localization, stamp))
         self.record(entries=entries)
         self.replay('in.bag', 'maps.bag')
-        with map_bag.open_bag(self.path('maps.bag')) as bag:
-            drive = map_bag.read_drive(bag, 'maps.bag', '/relative_map', 'flu', lambda share: None)
+        with bags.open_bag(self.path('maps.bag')) as bag:
+            drive = bags.read_drive(bag, 'maps.bag', '/relative_map', 'flu', lambda share: None)
         self.assertGreater(len(drive.stretches), 6)
         for before, after in zip(drive.stretches, drive.stretches[1:]):
             self.assertEqual(len(before), 3)

@@ -1,4 +1,9 @@
-"""The lanes of a map message as arrays of points, for plot_maps."""
+"""The lanes of a relative_map/MapMsg as numpy arrays. Body frame: x forward, y left, in metres; angles in radians.
+
+    for lane in lanes_of(message):
+        if lane.current:
+            y_in_20_m = numpy.interp(20.0, lane.path["x"], lane.path["y"])
+"""
 import math
 
 import numpy
@@ -7,13 +12,32 @@ OVERLAP = 0.3  # [m] of stretches that follow each other: no seam shows
 SEARCHED = 25.0  # [m] of a curve, from its start: the vehicle is beside one of these points
 
 
-class Lane:
-    """One lane of a map, in the frame that its points were carried to."""
+PATH = numpy.dtype([(name, float) for name in ("x", "y", "theta", "kappa", "dkappa", "s")])
 
-    def __init__(self, left, right, center, priority, current, paint):
+
+class Lane:
+    """One lane of a map.
+
+    left, right, center   N x 2 arrays [m] of the borders and the centerline, in the frame that they were carried to
+    priority, current     0 is the best; whether the vehicle is in it
+    paint                 of (left, right): [(points, type as in LaneBoundaryType)]
+    id, speed_limit       as in the message; [m/s]
+    path                  the whole centerline in the body frame: a structured array of x, y [m], theta [rad],
+                          kappa [1/m], dkappa [1/m^2] and s [m] from its first point
+    """
+
+    def __init__(self, left, right, center, priority, current, paint, id="", speed_limit=math.nan, path=None):
         self.left, self.right, self.center = left, right, center
         self.priority, self.current = priority, current
-        self.paint = paint  # of (left, right): [(points, type)]
+        self.paint = paint
+        self.id, self.speed_limit = id, speed_limit
+        self.path = numpy.empty(0, PATH) if path is None else path
+
+
+def path_of(navigation_path):
+    """The points of a LaneNavigationPath as a structured array, see Lane.path."""
+    points = navigation_path.navigation_path.path.path_point
+    return numpy.array([(p.x, p.y, p.theta, p.kappa, p.dkappa, p.s) for p in points], PATH)
 
 
 def points_of(curve):
@@ -69,7 +93,7 @@ def lanes_of(message, behind=math.inf, ahead=math.inf, until=None):
         return foot_on(points, until, here, here + SEARCHED + 2.0 * math.hypot(*until))[0]
 
     lanes = []
-    priorities = {path.lane_id: path.navigation_path.path_priority for path in message.navigation_path}
+    paths = {path.lane_id: path for path in message.navigation_path}
     for lane in message.hdmap.lane:
         curves, paints = [], []
         for curve, kinds in ((lane.left_boundary.curve, lane.left_boundary.boundary_type),
@@ -85,11 +109,15 @@ def lanes_of(message, behind=math.inf, ahead=math.inf, until=None):
             paints.append([(part(points, max(kind.s, first), min(kind_end, last)), kind.types[0] if kind.types else 0)
                            for kind, kind_end in zip(kinds, ends)])
         if len(curves) == 3:
-            lanes.append(Lane(*curves, priorities.get(lane.id, 99), lane.id == message.current_lane_id, paints[:2]))
+            path = paths.get(lane.id)
+            lanes.append(Lane(*curves, path.navigation_path.path_priority if path else 99,
+                              lane.id == message.current_lane_id, paints[:2], lane.id, lane.speed_limit,
+                              path_of(path) if path else None))
     return lanes
 
 
 def carry(lanes, pose):
     return [Lane(carried(lane.left, pose), carried(lane.right, pose), carried(lane.center, pose), lane.priority,
-                 lane.current, [[(carried(points, pose), kind) for points, kind in side] for side in lane.paint])
+                 lane.current, [[(carried(points, pose), kind) for points, kind in side] for side in lane.paint],
+                 lane.id, lane.speed_limit, lane.path)
             for lane in lanes]

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from map_bag import JUMP, SOURCES, STATUS_NAMES
+from relative_map.bags import JUMP, SOURCES, STATUS_NAMES
 
 BLUE, GREEN, PURPLE, GREY = "#0072B2", "#009E73", "#CC79A7", "#8A8A8A"
 ORANGE, VERMILLION, YELLOW, SKY, BLACK = "#E69F00", "#D55E00", "#F0E442", "#56B4E9", "#202020"

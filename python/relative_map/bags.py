@@ -1,13 +1,12 @@
-"""Reads a drive out of a bag of maps, for plot_maps: numbers of every map, and the lanes along the way."""
+"""Reads a drive out of a bag of maps: numbers of every map, and the lanes along the way. `open_bag`, then `read_drive`."""
 import math
 import os
 import sys
 
 import numpy
 import rosbag
+from relative_map.lanes import beside_origin, carried, carry, lanes_of, points_of
 from relative_map.msg import FusionState, MapMsg, MapStatus
-
-from map_lanes import beside_origin, carried, carry, lanes_of, points_of
 
 LANE_STEP = 10.0  # [m] of driving between the maps whose lanes are kept
 LANE_REACH = 40.0  # [m] ahead of the vehicle up to which they are
