@@ -2,7 +2,7 @@
 
     for lane in lanes_of(message):
         if lane.current:
-            y_in_20_m = numpy.interp(20.0, lane.path["x"], lane.path["y"])
+            y_in_20_m = numpy.interp(lane.vehicle_s + 20.0, lane.path["s"], lane.path["y"])
 """
 import math
 
@@ -22,15 +22,17 @@ class Lane:
     priority, current     0 is the best; whether the vehicle is in it
     paint                 of (left, right): [(points, type as in LaneBoundaryType)]
     id, speed_limit       as in the message; [m/s]
+    vehicle_s             [m] along the path: where the vehicle is beside it
     path                  the whole centerline in the body frame: a structured array of x, y [m], theta [rad],
                           kappa [1/m], dkappa [1/m^2] and s [m] from its first point
     """
 
-    def __init__(self, left, right, center, priority, current, paint, id="", speed_limit=math.nan, path=None):
+    def __init__(self, left, right, center, priority, current, paint, id="", speed_limit=math.nan, path=None,
+                 vehicle_s=math.nan):
         self.left, self.right, self.center = left, right, center
         self.priority, self.current = priority, current
         self.paint = paint
-        self.id, self.speed_limit = id, speed_limit
+        self.id, self.speed_limit, self.vehicle_s = id, speed_limit, vehicle_s
         self.path = numpy.empty(0, PATH) if path is None else path
 
 
@@ -112,12 +114,12 @@ def lanes_of(message, behind=math.inf, ahead=math.inf, until=None):
             path = paths.get(lane.id)
             lanes.append(Lane(*curves, path.navigation_path.path_priority if path else 99,
                               lane.id == message.current_lane_id, paints[:2], lane.id, lane.speed_limit,
-                              path_of(path) if path else None))
+                              path_of(path) if path else None, path.vehicle_s if path else math.nan))
     return lanes
 
 
 def carry(lanes, pose):
     return [Lane(carried(lane.left, pose), carried(lane.right, pose), carried(lane.center, pose), lane.priority,
                  lane.current, [[(carried(points, pose), kind) for points, kind in side] for side in lane.paint],
-                 lane.id, lane.speed_limit, lane.path)
+                 lane.id, lane.speed_limit, lane.path, lane.vehicle_s)
             for lane in lanes]

@@ -43,16 +43,16 @@ class Migration(unittest.TestCase):
     def test_maps_of_before_vehicle_s(self):
         self.record_old()
         rules = os.path.join(rospkg.RosPack().get_path('relative_map'), 'migration', 'maps.bmr')
-        for migrator in (rosbag.migration.MessageMigrator([rules], plugins=False), rosbag.migration.MessageMigrator()):
-            self.assertEqual(rosbag.migration.fixbag2(migrator, self.old, self.new), [])
-            with rosbag.Bag(self.new) as bag:
-                (_, message, time), = bag.read_messages()
-            self.assertEqual((message._type, message._md5sum), (MapMsg._type, MapMsg._md5sum))
-            self.assertEqual((time, message.sequence_num, message.current_lane_id), (rospy.Time(10), 7, 'a'))
-            path, = message.navigation_path
-            self.assertEqual((path.lane_id, path.remaining_distance, len(path.navigation_path.path.path_point)),
-                             ('a', 42.0, 25))
-            self.assertAlmostEqual(path.vehicle_s, 5.0, 9)
+        migrator = rosbag.migration.MessageMigrator([rules], plugins=False)
+        self.assertEqual(rosbag.migration.fixbag2(migrator, self.old, self.new), [])
+        with rosbag.Bag(self.new) as bag:
+            (_, message, time), = bag.read_messages()
+        self.assertEqual((message._type, message._md5sum), (MapMsg._type, MapMsg._md5sum))
+        self.assertEqual((time, message.sequence_num, message.current_lane_id), (rospy.Time(10), 7, 'a'))
+        path, = message.navigation_path
+        self.assertEqual((path.lane_id, path.remaining_distance, len(path.navigation_path.path.path_point)),
+                         ('a', 42.0, 25))
+        self.assertAlmostEqual(path.vehicle_s, 5.0, 9)
 
 
 if __name__ == '__main__':

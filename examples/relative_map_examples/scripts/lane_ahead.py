@@ -12,7 +12,8 @@ def on_map(message):
         return
     all_lanes = lanes.lanes_of(message)
     mine = next(lane for lane in all_lanes if lane.current)
-    y, kappa = (numpy.interp(20.0, mine.path["x"], mine.path[name]) for name in ("y", "kappa"))
+    ahead = mine.vehicle_s + 20.0  # along the lane: x rises and falls where it bends
+    y, kappa = (numpy.interp(ahead, mine.path["s"], mine.path[name]) for name in ("y", "kappa"))
     rospy.loginfo("%d lanes; mine is at y = %+.2f m, curved by %.4f 1/m", len(all_lanes), y, kappa)
 
 

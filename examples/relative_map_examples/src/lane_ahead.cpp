@@ -10,9 +10,9 @@ void on_map(const relative_map::MapMsgConstPtr& map) {
   for (const relative_map::LaneNavigationPath& lane : map->navigation_path) {
     if (lane.lane_id != map->current_lane_id) continue;
     for (const relative_map::PathPoint& point : lane.navigation_path.path.path_point) {
-      if (point.x < 20.0) continue;  // body frame: x forward, y left
+      if (point.s < lane.vehicle_s + 20.0) continue;  // along the lane: x rises and falls where it bends
       ROS_INFO("%zu lanes; mine is at y = %+.2f m, curved by %.4f 1/m", map->navigation_path.size(), point.y,
-               point.kappa);
+               point.kappa);  // body frame: x forward, y left
       return;
     }
   }
