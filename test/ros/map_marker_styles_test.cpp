@@ -273,7 +273,7 @@ TEST(RawLine, IsThatOfTheBodyFrameAtTheMapsTime) {
   Eigen::Isometry3d link_from_base = Eigen::Isometry3d::Identity();
   link_from_base.linear() = test::yaw(-M_PI / 2).toRotationMatrix();
   link_from_base.translation() = link_from_base.linear() * Eigen::Vector3d(-2.0, 0.0, 0.0);
-  RawLine raw(OrientationConvention::kFlu, [&](auto&, auto&) { return link_from_base; });
+  RawLine raw(OrientationConvention::kFlu, [&](auto&, auto&, auto&) { return link_from_base; });
   Scene scene;
   MapMsg map = scene.map();
   map.localization.child_frame_id = "imu_link";

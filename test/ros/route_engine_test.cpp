@@ -20,7 +20,8 @@ const double kNan = std::numeric_limits<double>::quiet_NaN();
 class RouteEngineTest : public testing::Test {
  protected:
   RouteEngineTest()
-      : engine_(RouteNodeConfig(), [this](const std::string& target, const std::string& source) {
+      : engine_(RouteNodeConfig(), [this](const std::string& target, const std::string& source,
+                                          const ros::Time&) {
           return target == source ? std::optional<Eigen::Isometry3d>(Eigen::Isometry3d::Identity()) : link_;
         }) {
     core::LaneGraph graph = core::test::grid(2, 4);

@@ -63,7 +63,7 @@ void RouteEngine::on_localization(const LocalizationEstimateConstPtr& message, c
   double heading =
       std::isfinite(localization.heading) ? localization.heading : std::atan2(forward.y(), forward.x());
   if (link != config_.base_frame) {
-    const auto link_from_base = transforms_(link, config_.base_frame);
+    const auto link_from_base = transforms_(link, config_.base_frame, stamp);
     if (!link_from_base) {
       pose_fault_ =
           "no transform from localization's child_frame_id '" + link + "' to '" + config_.base_frame + "'";
