@@ -48,7 +48,8 @@ void PredictionEngine::on_localization(const LocalizationEstimateConstPtr& messa
                                        const ros::Time& received) {
   const std::string link =
       message->child_frame_id.empty() ? config_.base_frame : frame_name(message->child_frame_id);
-  const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_.base_frame);
+  const ros::Time at = message->header.stamp.isZero() ? received : message->header.stamp;
+  const std::optional<Eigen::Isometry3d> link_from_base = transforms_(link, config_.base_frame, at);
   pose_fault_.clear();
   if (!link_from_base) {
     pose_fault_ =
@@ -87,7 +88,8 @@ void PredictionEngine::on_obstacles(const PerceptionObstaclesConstPtr& message, 
 std::optional<core::Pose2> PredictionEngine::map_from(const std::string& frame_id, core::Time stamp) {
   const std::string frame = frame_id.empty() ? config_.base_frame : frame_name(frame_id);
   if (frame == map_frame_ && !map_frame_.empty()) return core::Pose2();
-  const std::optional<Eigen::Isometry3d> base_from_frame = transforms_(config_.base_frame, frame);
+  const std::optional<Eigen::Isometry3d> base_from_frame =
+      transforms_(config_.base_frame, frame, to_ros(stamp));
   if (!base_from_frame) {
     frame_fault_ = "no transform from '" + frame + "' to '" + config_.base_frame + "'";
     return std::nullopt;
