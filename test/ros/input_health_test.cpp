@@ -20,7 +20,10 @@ InputExpectation chassis() {
 
 class InputHealthTest : public testing::Test {
  protected:
-  InputHealthTest() { ros::Time::setNow(ros::Time(1000.0)); }
+  InputHealthTest() {
+    ros::Time::init();
+    ros::Time::setNow(ros::Time(1000.0));
+  }
   ~InputHealthTest() override { ros::Time::useSystemTime(); }
 
   /// Messages at a rate [Hz], so old [s], for so long [s], with a look each second; what the last look says.

@@ -21,7 +21,8 @@ class Drive : public testing::Test {
 
   explicit Drive(const PredictionNodeConfig& config = {})
       : engine_(config,
-                [](const std::string& target, const std::string& source) -> std::optional<Eigen::Isometry3d> {
+                [](const std::string& target, const std::string& source,
+                   const ros::Time&) -> std::optional<Eigen::Isometry3d> {
                   if (target == source) return Eigen::Isometry3d::Identity();
                   if (source != "radar") return std::nullopt;
                   Eigen::Isometry3d base_from_radar = Eigen::Isometry3d::Identity();
