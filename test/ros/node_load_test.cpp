@@ -54,7 +54,7 @@ class BusyManager {
     navigation_ = nh_.advertise<NavigationInfo>("navigation", 1, true);
     navigation_.publish(test::three_lanes(test::Pose2()));
     other_ =
-        nh_.subscribe<LocalizationEstimate>("localization", 10, [](const LocalizationEstimateConstPtr&) {});
+        nh_.subscribe<LocalizationEstimate>("localization", 10, &BusyManager::ignore<LocalizationEstimate>);
     spinner_.start();
   }
 
@@ -72,6 +72,8 @@ class BusyManager {
 
   ros::NodeHandle nh() const { return nh_; }
   ros::NodeHandle private_nh() const { return private_nh_; }
+  template <class Message>
+  static void ignore(const boost::shared_ptr<const Message>&) {}
   std::size_t listeners() const { return localization_.getNumSubscribers() + chassis_.getNumSubscribers(); }
 
  private:
@@ -87,7 +89,9 @@ TEST(NodeLoad, ComesAndGoesWhileItsTopicsAreBusy) {
   const Repeated vehicle(500.0, [&] { manager.sense(); });
   std::atomic<std::size_t> maps{0};
   const ros::Subscriber planner = manager.nh().subscribe<MapMsg>(
-      "relative_map", 100, [&](const MapMsgConstPtr& map) { maps += map->hdmap.lane.size() == 3; });
+      "relative_map", 100, boost::function<void(const MapMsgConstPtr&)>([&](const MapMsgConstPtr& map) {
+        maps += map->hdmap.lane.size() == 3;
+      }));
   for (std::size_t i = 0; i < loads(); ++i) {
     const std::size_t before = maps;
     RelativeMapNode node(manager.nh(), manager.private_nh());
@@ -124,7 +128,7 @@ TEST(NodeLoad, LeavesNothingBehindWhereATopicIsTakenByAnotherType) {
   BusyManager manager("/conflict");
   // Before any subscriber of the right type in this process: roscpp refuses a second type.
   const ros::Subscriber other = manager.nh().subscribe<std_msgs::String>(
-      "perception/lane_markers", 1, [](const std_msgs::StringConstPtr&) {});
+      "perception/lane_markers", 1, &BusyManager::ignore<std_msgs::String>);
   const Repeated vehicle(500.0, [&] { manager.sense(); });
   const std::size_t before = manager.listeners();
   for (std::size_t i = 0; i < loads() / 4; ++i) {
