@@ -126,13 +126,14 @@ TEST(NodeLoad, IsReconfiguredWhileItComesAndGoes) {
 
 TEST(NodeLoad, LeavesNothingBehindWhereATopicIsTakenByAnotherType) {
   BusyManager manager("/conflict");
-  // Before any subscriber of the right type in this process: roscpp refuses a second type.
-  const ros::Subscriber other = manager.nh().subscribe<std_msgs::String>(
-      "perception/lane_markers", 1, &BusyManager::ignore<std_msgs::String>);
+  // roscpp refuses a second type of a topic in one process.
+  const ros::Subscriber other =
+      manager.nh().subscribe<std_msgs::String>("taken", 1, &BusyManager::ignore<std_msgs::String>);
+  const ros::NodeHandle remapped(manager.nh(), "", {{"perception/lane_markers", "taken"}});
   const Repeated vehicle(500.0, [&] { manager.sense(); });
   const std::size_t before = manager.listeners();
   for (std::size_t i = 0; i < loads() / 4; ++i) {
-    EXPECT_THROW(RelativeMapNode(manager.nh(), manager.private_nh()), ros::Exception);
+    EXPECT_THROW(RelativeMapNode(remapped, manager.private_nh()), ros::Exception);
     EXPECT_EQ(manager.listeners(), before);
   }
 }

@@ -42,8 +42,8 @@ class Replay(ReplayTest):
             self.record('car.bag', [(recorded + topic, message, time) for topic, message, time in drive()])
             self.replay('car.bag', 'out.bag', '--namespace', 'car1')
             self.expect_same_maps('plain.bag', 'out.bag', '/car1/relative_map')
-        self.replay('in.bag', 'out.bag', '--namespace', '/')
-        self.expect_same_maps('plain.bag', 'out.bag', '/relative_map')
+        self.replay('in.bag', 'root.bag', '--namespace', '/')
+        self.expect_same_maps('plain.bag', 'root.bag', '/relative_map')
 
     def test_topics_are_remapped_as_for_the_node(self):
         names = {'/localization': '/ins/pose', '/chassis': '/can/chassis'}
@@ -207,7 +207,7 @@ class Replay(ReplayTest):
 
     def test_help(self):
         run = self.replay('--help')
-        self.assertIn('usage: rosrun relative_map replay IN.bag OUT.bag [--config FILE] [--urdf FILE]', run.output)
+        self.assertIn('usage: rosrun relative_map replay IN.bag... OUT.bag [--config FILE] [--urdf FILE]', run.output)
 
 
 if __name__ == '__main__':
