@@ -33,7 +33,8 @@ struct NodeConfig {
   bool use_navigation_mode = true;
   std::string map_frame = "map";  ///< that lines of files are in which name none
   MinRateParam min_rate;
-  std::map<std::string, double> speed_limits;  ///< [m/s] of lanes by the name of their line; others: the default
+  std::map<std::string, double>
+      speed_limits;  ///< [m/s] of lanes by the name of their line; others: the default
   OrientationConvention orientation_convention = OrientationConvention::kFlu;
 };
 
