@@ -31,6 +31,13 @@ double LaneSequence::turn(double s, double reach) const {
   return sum;
 }
 
+double LaneSequence::chord_angle(double s, double reach) const {
+  std::size_t hint = 0;
+  const LaneSample first = at(s, hint);
+  const Point2 chord = at(s + reach, hint).position - first.position;
+  return std::atan2(cross(first.direction, chord), first.direction.dot(chord));
+}
+
 void sequences_from(const LaneView& view, const LanePlace& place, double branch_reach, double reach,
                     std::size_t most, std::vector<LaneSequence>& result) {
   std::vector<LaneSequence> open{LaneSequence(view, place)};

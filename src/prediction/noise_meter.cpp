@@ -16,7 +16,7 @@ constexpr double kFirstGuess = 0.2;         // [m] a good lidar's boxes, until t
 }  // namespace
 
 NoiseMeter::NoiseMeter(const MotionFilterParam& param)
-    : least_(param.min_position_stddev),
+    : least_(std::min(param.min_position_stddev, param.min_pedestrian_stddev)),
       most_(param.max_position_stddev),
       stddev_(std::clamp(kFirstGuess, least_, most_)) {}
 

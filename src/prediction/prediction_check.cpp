@@ -13,8 +13,9 @@ using Fault = std::optional<std::string>;
 
 constexpr double kTimeTolerance = 1e-6;  // [s]
 constexpr double kFirstPoint = 1e-3;     // [m]
-constexpr double kThetaTolerance = 0.3;  // [rad] between theta and the chord around a point
-constexpr double kLongestChord = 0.2;    // [m] a shorter chord has no direction to compare with
+// Of 0.3 rad between theta and the chord around a point.
+const double kCosThetaTolerance = std::cos(0.3);
+constexpr double kLongestChord = 0.2;  // [m] a shorter chord has no direction to compare with
 constexpr double kSumTolerance = 1e-6;
 // What a car can do, with something to spare: full braking on dry asphalt, and its grip across.
 constexpr double kMaxAcceleration = 8.0;  // [m/s^2]
@@ -80,10 +81,12 @@ Fault check_theta(const PredictedRoadUser&, const PredictedTrajectory& trajector
   const auto& points = trajectory.points;
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const Point2 chord = points[i + 1].position - points[i - 1].position;
-    if (chord.norm() < kLongestChord) continue;
+    const double length = chord.norm();
+    if (length < kLongestChord) continue;
+    const double ahead = chord.x() * std::cos(points[i].theta) + chord.y() * std::sin(points[i].theta);
+    if (ahead >= kCosThetaTolerance * length) continue;
     const double off = angle_difference(points[i].theta, std::atan2(chord.y(), chord.x()));
-    if (std::abs(off) > kThetaTolerance)
-      return fault("theta is ", off, " rad off its points' at ", points[i].time, " s");
+    return fault("theta is ", off, " rad off its points' at ", points[i].time, " s");
   }
   return std::nullopt;
 }
@@ -117,6 +120,7 @@ Fault check_forward(const PredictedRoadUser&, const PredictedTrajectory& traject
   const auto& points = trajectory.points;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point2 step = points[i + 1].position - points[i].position;
+    if (step.squaredNorm() < kBackward * kBackward) continue;
     const double ahead = step.x() * std::cos(points[i].theta) + step.y() * std::sin(points[i].theta);
     if (ahead < -kBackward) return fault("it drives backwards by ", -ahead, " m at ", points[i].time, " s");
   }

@@ -21,16 +21,16 @@ PredictionConfig checked(const PredictionConfig& config) {
 
 }  // namespace
 
-RoadUserPrediction::RoadUserPrediction(const PredictionConfig& config)
-    : config_(checked(config)), store_(config.store, config.filter), selection_(config.selection) {}
+RoadUserPrediction::RoadUserPrediction(const PredictionConfig& config, std::shared_ptr<const Network> network)
+    : config_(checked(config)), store_(config.store, config.filter), selection_(config, std::move(network)) {}
 
 namespace {
 
 constexpr double kEgoReach = 3.0;  // [m] to the lane that the vehicle is on
 
 const Service& service_of(const SelectionTable& selection, const Situation& situation) {
-  return selection.find(situation.user->type(),
-                        situation.options.empty() ? Surrounding::kOffLane : Surrounding::kOnLane);
+  const Surrounding on_lane = situation.interactive ? Surrounding::kInteractive : Surrounding::kOnLane;
+  return selection.find(situation.user->type(), situation.options.empty() ? Surrounding::kOffLane : on_lane);
 }
 
 PredictedRoadUser described(const Situation& situation, const LaneView& lanes) {

@@ -112,9 +112,10 @@ void RoadUserStore::add(const SeenRoadUsers& frame, const Point2& center) {
 }
 
 void RoadUserStore::add(Time stamp, const SeenRoadUser& seen) {
-  const double stddev = std::isfinite(seen.position_stddev)
-                            ? std::max(seen.position_stddev, filter_.min_position_stddev)
-                            : noise_.stddev();
+  const double least =
+      seen.type == RoadUserType::kPedestrian ? filter_.min_pedestrian_stddev : filter_.min_position_stddev;
+  const double stddev =
+      std::max(least, std::isfinite(seen.position_stddev) ? seen.position_stddev : noise_.stddev());
   const auto known = users_.find(seen.id);
   if (known == users_.end()) {
     users_.emplace(seen.id, RoadUser(stamp, seen, stddev, filter_));

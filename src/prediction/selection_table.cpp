@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "relative_map/prediction/evaluators/cost_evaluator.hpp"
+#include "relative_map/prediction/evaluators/mlp_evaluator.hpp"
 #include "relative_map/prediction/predictors/free_move.hpp"
 #include "relative_map/prediction/predictors/lane_predictors.hpp"
 #include "relative_map/prediction/predictors/move_sequence.hpp"
@@ -15,10 +16,36 @@ constexpr RoadUserType kTypes[] = {RoadUserType::kUnknown,          RoadUserType
                                    RoadUserType::kUnknownUnmovable, RoadUserType::kPedestrian,
                                    RoadUserType::kBicycle,          RoadUserType::kVehicle};
 
+const ServicesParam& services_of(const PredictionConfig& config, RoadUserType type) {
+  switch (type) {
+    case RoadUserType::kVehicle:
+      return config.vehicle;
+    case RoadUserType::kBicycle:
+      return config.bicycle;
+    case RoadUserType::kPedestrian:
+      return config.pedestrian;
+    default:
+      return config.unknown;
+  }
+}
+
+ServiceParam service_of(const ServicesParam& services, Surrounding surrounding) {
+  switch (surrounding) {
+    case Surrounding::kOnLane:
+      return services.on_lane;
+    case Surrounding::kInteractive:
+      return {services.on_lane.evaluator, services.interactive_predictor};
+    default:
+      return services.off_lane;
+  }
+}
+
 }  // namespace
 
-SelectionTable::SelectionTable(const std::string& preset) {
+SelectionTable::SelectionTable(const PredictionConfig& config, std::shared_ptr<const Network> network) {
+  const std::string& preset = config.selection;
   evaluators_["cost"] = std::make_unique<CostEvaluator>();
+  if (network) evaluators_["mlp"] = std::make_unique<MlpEvaluator>(std::move(network));
   evaluators_["keep_lane"] = std::make_unique<KeepLaneEvaluator>();
   predictors_["single_lane"] = std::make_unique<SingleLanePredictor>();
   predictors_["lane_sequence"] = std::make_unique<LaneSequencePredictor>();
@@ -39,6 +66,20 @@ SelectionTable::SelectionTable(const std::string& preset) {
   }
   services_[{RoadUserType::kPedestrian, Surrounding::kOnLane}] = {"cost", "free_move"};
   services_[{RoadUserType::kBicycle, Surrounding::kOnLane}] = {"keep_lane", on_lane};
+  for (const RoadUserType type : kTypes) {
+    for (const Surrounding surrounding :
+         {Surrounding::kOnLane, Surrounding::kOffLane, Surrounding::kInteractive}) {
+      Service& service = services_[{type, surrounding}];
+      if (surrounding == Surrounding::kInteractive) service = services_[{type, Surrounding::kOnLane}];
+      const ServiceParam other = service_of(services_of(config, type), surrounding);
+      if (!other.evaluator.empty()) service.evaluator = other.evaluator;
+      if (!other.predictor.empty()) service.predictor = other.predictor;
+      if (evaluators_.count(service.evaluator) == 0 || predictors_.count(service.predictor) == 0) {
+        throw std::invalid_argument("there is no evaluator '" + service.evaluator + "' or no predictor '" +
+                                    service.predictor + "' here; mlp needs its network");
+      }
+    }
+  }
 }
 
 const Service& SelectionTable::find(RoadUserType type, Surrounding surrounding) const {

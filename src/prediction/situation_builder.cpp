@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "relative_map/prediction/speed_model.hpp"
 
@@ -50,6 +51,7 @@ LaneOption make_option(LaneSequence path, const Situation& situation, const Lane
   if (situation.still()) option.lateral_speed = 0.0;
   const double reach = std::max(kLeastBranchReach, kTurnTime * situation.speed);
   option.turn = option.path.turn(place.s, reach);
+  option.bend = std::max(std::abs(option.turn), 2.0 * std::abs(option.path.chord_angle(place.s, reach)));
   option.braking =
       braking_for_curves(option.path, place.s, situation.speed, reach, param.lateral_acceleration);
   return option;
@@ -91,6 +93,10 @@ void find_ways(const LaneView& lanes, const LaneChoiceParam& param, Situation& s
   for (LaneSequence& path : paths) {
     situation.options.push_back(make_option(std::move(path), situation, param));
   }
+  // What all ways have in common is the bend of the road.
+  double least = std::numeric_limits<double>::infinity();
+  for (const LaneOption& option : situation.options) least = std::min(least, option.bend);
+  for (LaneOption& option : situation.options) option.bend -= least;
 }
 
 Situation make_situation(const RoadUser& user, Time now, const LaneView& lanes,

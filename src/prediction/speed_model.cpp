@@ -12,11 +12,20 @@ constexpr double kStraight = 0.004;     // [1/m] a curve of 250 m bothers nobody
 constexpr double kNoLimit = 100.0;      // [m/s]
 constexpr double kSlowestCurve = 2.5;   // [m/s] nobody stops for a curve
 constexpr double kCurveResponse = 0.5;  // [s] in which speed is brought down to what a curve allows
+constexpr double kHardBraking = 4.0;    // [m/s^2] until then a leader may still make way
+constexpr double kBumper = 0.2;         // [m] nearer nobody stops
+constexpr double kTouch = 1.0;          // [m] who is nearer already drives beside its leader, not into it
 constexpr double kUrgeTime = 3.0;       // [s] in which a mood fades
 
 double curve_speed(double kappa, double lateral_acceleration) {
   if (std::abs(kappa) < kStraight) return kNoLimit;
   return std::max(kSlowestCurve, std::sqrt(lateral_acceleration / std::abs(kappa)));
+}
+
+/// [m/s^2] that bring it to the speed of a leader which goes on as fast as it does
+double braking_behind(double speed, double leader_speed, double gap) {
+  const double closing = std::max(0.0, speed - leader_speed);
+  return 0.5 * closing * closing / std::max(gap, 0.05);
 }
 
 bool bends(const LaneSequence& path) {
@@ -76,7 +85,7 @@ SpeedProfile drive(const Driver& driver, const LeadingVehicle* leader, const Cur
   const double start = std::clamp(driver.acceleration, -param.max_braking, param.max_acceleration);
   double own = 1.0, urge = driver.urge;  // what is left of what it does now
   for (std::size_t i = 0; i < kPredictionPoints; ++i) {
-    double a = own * start;
+    double a = own * start, needed = 0.0;
     if (follows) {
       const double gap = std::max(0.0, leader->gap + leader->profile->s[i] - s);
       // Nobody goes faster than it does now only because the road ahead is free, unless it is held up now.
@@ -87,8 +96,12 @@ SpeedProfile drive(const Driver& driver, const LeadingVehicle* leader, const Cur
           param.follow_difference_gain * (leader->profile->v[i] - v) *
               std::clamp(2.0 - gap / std::max(10.0, 2.0 * param.max_headway * v), 0.0, 1.0);
       a += (1.0 - own) * following;
+      const double braking = braking_behind(v, leader->profile->v[i], gap - kBumper);
+      if (leader->gap > kTouch && (braking > kHardBraking || gap < kTouch)) needed = braking;
     }
     a += urge;
+    // Nobody runs into the one ahead, in whatever mood.
+    if (needed > 0.0) a = std::min(a, -needed);
     if (curves != nullptr) a = std::min(a, (curves->at(s) - v) / kCurveResponse);
     a = std::clamp(a, -param.max_braking, param.max_acceleration);
     if (v <= 0.0) a = std::max(a, 0.0);

@@ -18,26 +18,27 @@ struct RoadUserStoreParam {
 /// The motion filter: acceleration is a first-order process (Singer, 1970).
 struct MotionFilterParam {
   std::string preset = "singer";   ///< or "seed": constant acceleration, Q 0.01, R 0.1, P0 0.1, whatever dt
-  double acceleration_time = 3.0;  ///< [s] in which an acceleration of a vehicle fades to 1/e
-  double vehicle_along = 1.2;      ///< [m/s^2] standard deviation of a vehicle's acceleration along
+  double acceleration_time = 0.8;  ///< [s] in which an acceleration of a vehicle fades to 1/e
+  double vehicle_along = 0.8;      ///< [m/s^2] standard deviation of a vehicle's acceleration along
   double vehicle_across = 0.5;     ///< [m/s^2] and across its heading, on the straight
-  double pedestrian_time = 0.3;    ///< [s] people change their pace within a step, then keep the new one
-  double pedestrian_along = 0.2;   ///< [m/s^2] in any direction: 0.15 m/s of pace within a second
-  double bicycle_time = 0.5;       ///< [s] a push on the pedals
-  double bicycle_along = 0.4;      ///< [m/s^2]
-  double min_position_stddev = 0.05;  ///< [m] no sensor is believed to be better
-  double max_position_stddev = 1.0;   ///< [m] measured noise beyond it is taken for manoeuvres
+  double pedestrian_time = 0.15;   ///< [s] people change their pace within a step, then keep the new one
+  double pedestrian_along = 0.25;  ///< [m/s^2] in any direction: 0.15 m/s of pace within a second
+  double bicycle_time = 0.2;       ///< [s] a push on the pedals
+  double bicycle_along = 0.6;      ///< [m/s^2]
+  double min_position_stddev = 0.06;    ///< [m] no sensor is believed to be better,
+  double min_pedestrian_stddev = 0.03;  ///< [m] but of a pedestrian, whose box is small
+  double max_position_stddev = 1.0;     ///< [m] measured noise beyond it is taken for manoeuvres
 };
 
 /// How a lane is chosen.
 struct LaneChoiceParam {
   double search_radius = 5.0;            ///< [m] lanes farther to the side are not considered
   double max_heading_difference = 1.05;  ///< [rad] between a road user and its lane
-  double preview_time = 1.5;             ///< [s] the lateral offset is judged as it will be then
+  double preview_time = 1.2;             ///< [s] the lateral offset is judged as it will be then
   double offset_scale = 0.9;             ///< [m] of that offset, over which a lane's odds fall to 1/e
-  double change_odds = 0.5;              ///< [-] of a lane beside the own one, the offset apart
-  double turn_odds = 0.35;               ///< [-] of a branch that turns, against one that goes straight on
-  double lateral_acceleration = 3.0;     ///< [m/s^2] that drivers take in curves
+  double change_odds = 0.4;              ///< [-] of a lane beside the own one, the offset apart
+  double turn_odds = 0.4;                ///< [-] of a branch that turns, against one that goes straight on
+  double lateral_acceleration = 3.5;     ///< [m/s^2] that drivers take in curves
   double brake_scale = 1.0;              ///< [m/s^2] over which needed braking costs odds, above comfort
   double min_probability = 0.02;         ///< [-] lanes less likely than this get no trajectory
   double max_modes = 6.0;                ///< [-] trajectories a road user
@@ -45,17 +46,29 @@ struct LaneChoiceParam {
 
 /// How fast they will be.
 struct SpeedParam {
-  double acceleration_time = 2.0;       ///< [s] an acceleration fades to 1/e where nobody is ahead
-  double follow_time = 1.0;             ///< [s] the same behind a leader: then it is the leader who counts
-  double follow_gain = 0.41;            ///< [1/s] towards the speed that the gap allows (Jiang 2001)
-  double follow_difference_gain = 0.5;  ///< [1/s] towards the leader's speed (Jiang 2001)
+  double acceleration_time = 1.5;       ///< [s] an acceleration fades to 1/e where nobody is ahead
+  double follow_time = 0.8;             ///< [s] the same behind a leader: then it is the leader who counts
+  double follow_gain = 0.25;            ///< [1/s] towards the speed that the gap allows
+  double follow_difference_gain = 0.4;  ///< [1/s] towards the leader's speed
   double standstill_gap = 2.5;          ///< [m] bumper to bumper
-  double min_headway = 0.6;             ///< [s] bounds of the headway that a driver is seen to keep
-  double max_headway = 2.0;             ///< [s]
+  double min_headway = 0.4;             ///< [s] bounds of the headway that a driver is seen to keep
+  double max_headway = 1.3;             ///< [s]
   double follow_horizon = 60.0;         ///< [m] leaders beyond it don't count
   double comfortable_braking = 2.0;     ///< [m/s^2] before curves
   double max_braking = 6.0;             ///< [m/s^2]
   double max_acceleration = 2.5;        ///< [m/s^2]
+};
+
+/// How far off a prediction may be, beyond what is not known of now: an error of speed and one of
+/// acceleration, both for the whole horizon. 99 % of errors on recorded traffic lie within three of these
+/// deviations.
+struct SpreadParam {
+  double along_speed = 1.35;              ///< [m/s] of vehicles and bicycles
+  double along_acceleration = 0.46;       ///< [m/s^2]
+  double across_speed = 0.55;             ///< [m/s] it may take another way than the likeliest
+  double across_acceleration = 0.4;       ///< [m/s^2]
+  double pedestrian_speed = 0.27;         ///< [m/s] in any direction
+  double pedestrian_acceleration = 0.07;  ///< [m/s^2]
 };
 
 /// Who matters (Apollo's numbers).
@@ -69,13 +82,27 @@ struct PriorityParam {
   double junction_distance = 10.0;   ///< [m] to a controlled junction that makes the scenario one
 };
 
+/// Who is evaluated and predicted by what, where the preset is not to decide; empty: as it has it.
+struct ServiceParam {
+  std::string evaluator;  ///< cost, keep_lane or mlp
+  std::string
+      predictor;  ///< move_sequence, lane_sequence, single_lane, free_move, extrapolation, regional ...
+};
+struct ServicesParam {
+  ServiceParam on_lane, off_lane;
+  std::string interactive_predictor;  ///< on a lane, where its way and the vehicle's meet
+};
+
 struct PredictionConfig {
   RoadUserStoreParam store;
   MotionFilterParam filter;
   LaneChoiceParam lane;
   SpeedParam speed;
+  SpreadParam spread;
   PriorityParam priority;
-  std::string selection = "default";  ///< or "navi": which evaluator and predictor serve whom
+  std::string selection = "default";  ///< or "navi": the preset of which evaluator and predictor serve whom
+  ServicesParam vehicle, bicycle, pedestrian, unknown;  ///< what differs from it
+  std::string network;                                  ///< file of the network that the evaluator mlp runs
 
   /// Every fault as one sentence that names the parameter and its value; empty: fit to run with.
   std::vector<std::string> validate() const;
@@ -85,6 +112,20 @@ struct PredictionConfig {
 template <class Config, class Visitor>
 void visit_parameters(Config& config, Visitor&& visit) {
   visit("selection", config.selection);
+  visit("network", config.network);
+  const auto visit_services = [&](const std::string& type, auto& services) {
+    const auto visit_service = [&](const std::string& where, auto& service) {
+      visit("services/" + type + "/" + where + "/evaluator", service.evaluator);
+      visit("services/" + type + "/" + where + "/predictor", service.predictor);
+    };
+    visit_service("on_lane", services.on_lane);
+    visit_service("off_lane", services.off_lane);
+    visit("services/" + type + "/interactive/predictor", services.interactive_predictor);
+  };
+  visit_services("vehicle", config.vehicle);
+  visit_services("bicycle", config.bicycle);
+  visit_services("pedestrian", config.pedestrian);
+  visit_services("unknown", config.unknown);
   auto& store = config.store;
   visit("store/max_age", store.max_age);
   visit("store/forget_after", store.forget_after);
@@ -102,6 +143,7 @@ void visit_parameters(Config& config, Visitor&& visit) {
   visit("filter/bicycle_time", filter.bicycle_time);
   visit("filter/bicycle_along", filter.bicycle_along);
   visit("filter/min_position_stddev", filter.min_position_stddev);
+  visit("filter/min_pedestrian_stddev", filter.min_pedestrian_stddev);
   visit("filter/max_position_stddev", filter.max_position_stddev);
   auto& lane = config.lane;
   visit("lane/search_radius", lane.search_radius);
@@ -126,6 +168,13 @@ void visit_parameters(Config& config, Visitor&& visit) {
   visit("speed/comfortable_braking", speed.comfortable_braking);
   visit("speed/max_braking", speed.max_braking);
   visit("speed/max_acceleration", speed.max_acceleration);
+  auto& spread = config.spread;
+  visit("spread/along_speed", spread.along_speed);
+  visit("spread/along_acceleration", spread.along_acceleration);
+  visit("spread/across_speed", spread.across_speed);
+  visit("spread/across_acceleration", spread.across_acceleration);
+  visit("spread/pedestrian_speed", spread.pedestrian_speed);
+  visit("spread/pedestrian_acceleration", spread.pedestrian_acceleration);
   auto& priority = config.priority;
   visit("priority/ahead", priority.ahead);
   visit("priority/beside", priority.beside);

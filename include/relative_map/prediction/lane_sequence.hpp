@@ -42,6 +42,9 @@ class LaneSequence {
   }
   /// [rad] how far it turns from s on over `reach` [m]
   double turn(double s, double reach) const;
+  /// [rad] from the way's direction at s to the straight line over to where it is `reach` [m] farther; of an
+  /// arc it is half of its turn, and lanes that part sideways have one, too
+  double chord_angle(double s, double reach) const;
 
  private:
   const LaneView* view_;

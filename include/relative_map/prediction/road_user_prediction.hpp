@@ -10,8 +10,10 @@ namespace relative_map::core {
 /// Road users and lanes in, their futures out, all in the map frame. No clock: `now` is an argument.
 class RoadUserPrediction {
  public:
-  /// Throws std::invalid_argument for a configuration whose validate() finds faults.
-  explicit RoadUserPrediction(const PredictionConfig& config);
+  /// Throws std::invalid_argument for a configuration whose validate() finds faults, and where an evaluator
+  /// mlp has no `network`.
+  explicit RoadUserPrediction(const PredictionConfig& config,
+                              std::shared_ptr<const Network> network = nullptr);
 
   /// What was seen, in the order of time.
   void see(const SeenRoadUsers& frame, const EgoVehicle& ego) { store_.add(frame, ego.pose.position()); }

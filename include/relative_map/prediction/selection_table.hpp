@@ -6,12 +6,13 @@
 #include <tuple>
 
 #include "relative_map/prediction/evaluators/evaluator.hpp"
+#include "relative_map/prediction/network.hpp"
 #include "relative_map/prediction/predictors/predictor.hpp"
 
 namespace relative_map::core {
 
 /// Where a road user is.
-enum class Surrounding { kOnLane, kOffLane };
+enum class Surrounding { kOnLane, kOffLane, kInteractive };
 
 /// Who is served by what.
 struct Service {
@@ -21,9 +22,10 @@ struct Service {
 /// Which evaluator and which predictor serve a road user.
 class SelectionTable {
  public:
-  /// A preset: "default", or "navi" as Apollo's navigation mode has it. Throws std::invalid_argument for
-  /// others.
-  explicit SelectionTable(const std::string& preset);
+  /// The preset that the configuration names, "default" or "navi" as Apollo's navigation mode has it, with
+  /// what it says otherwise for some. Throws std::invalid_argument where a name is not known or the network
+  /// for mlp is not there.
+  explicit SelectionTable(const PredictionConfig& config, std::shared_ptr<const Network> network = nullptr);
 
   const Service& find(RoadUserType type, Surrounding surrounding) const;
   const Evaluator& evaluator(const std::string& name) const { return *evaluators_.at(name); }

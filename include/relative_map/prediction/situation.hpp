@@ -32,6 +32,7 @@ struct LaneOption {
   double lateral_speed = 0.0;  ///< [m/s] left positive, against it
   double half_width = 0.0;     ///< [m] of its first lane, on the road user's side
   double turn = 0.0;           ///< [rad] within the reach of a few seconds
+  double bend = 0.0;           ///< [rad] that it bends away by, more than the straightest of all ways
   double braking = 0.0;        ///< [m/s^2] that its curves ask for
   double probability = 0.0;
   std::optional<Leader> leader;

@@ -114,7 +114,7 @@ class SceneRun {
       : arguments_(arguments),
         scene_(scene),
         lanes_(scene.lanes),
-        prediction_(config),
+        prediction_(config, load_network(config)),
         random_(arguments.seed) {}
 
   void run(std::ostream& out) {

@@ -7,7 +7,7 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kTurn = 0.35;  // [rad] 20 degrees: a bend of the road is less
+constexpr double kTurn = 0.35;  // [rad] 20 degrees: who bends away by more has turned off
 
 }  // namespace
 
@@ -20,7 +20,7 @@ LaneCost lane_cost(const LaneOption& option, double speed, double acceleration,
     drift = std::copysign(std::min(std::abs(drift), std::abs(option.l) + 0.5), drift);
   cost.offset = std::abs(option.l + drift) / param.offset_scale;
   if (!option.inside()) cost.change = -std::log(param.change_odds);
-  if (std::abs(option.turn) > kTurn) cost.turn = -std::log(param.turn_odds);
+  cost.turn = -std::log(param.turn_odds) * std::min(1.0, option.bend / kTurn);
   // Who brakes already may be braking for the curve; who needs to brake harder than most do is not going
   // there.
   const double excess = option.braking - std::max(1.0, 1.0 - acceleration);

@@ -10,8 +10,6 @@ namespace {
 constexpr double kRateTime = 0.7;      // [s] in which a lateral speed within the lane is steered away
 constexpr double kResidualTime = 1.0;  // [s] in which what projection rounds off fades
 constexpr std::size_t kChoice = 30;    // 3 s
-// [m/s] of speeds, where positions are of the best: what recorded traffic shows.
-constexpr double kVehicleAlongError = 1.0, kVehicleAcrossError = 0.4, kPedestrianError = 0.15;
 // Slower than this, and than at first, it moves sideways only as it moves on [m/s].
 constexpr double kCrawl = 3.0, kSlowestCrawl = 0.5;
 constexpr double kShortestCurve = 0.2;  // [-] of the centerline's length
@@ -51,34 +49,26 @@ void LateralMove::advance(double share) {
   rate_fade_ *= 1.0 - share * (1.0 - kRateFactor);
 }
 
-Spread spread_of(const Situation& situation, const MotionFilterParam& param) {
-  const AccelerationModel model = acceleration_model(situation.user->type(), param);
+Spread spread_of(const Situation& situation, const SpreadParam& param) {
+  const MotionFilter::Covariance& covariance = situation.filter.covariance();
   const Point2 along = situation.forward(), across = left_of(along);
-  const auto axis = [&](const Point2& direction) {
-    Eigen::Matrix3d p;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        p(i, j) = direction.dot(situation.filter.covariance().block<2, 2>(2 * i, 2 * j) * direction);
-      }
+  const bool walks = situation.user->type() == RoadUserType::kPedestrian;
+  const auto deviations = [&](const Point2& direction, double speed, double acceleration, auto& result) {
+    const auto entry = [&](int row, int column) {
+      return direction.dot(covariance.block<2, 2>(2 * row, 2 * column) * direction);
+    };
+    const double position = entry(0, 0), both = entry(0, 1), velocity = entry(1, 1) + speed * speed;
+    for (std::size_t i = 0; i < kPredictionPoints; ++i) {
+      const double t = kPredictionStep * static_cast<double>(i);
+      const double gained = 0.5 * acceleration * t * t;
+      result[i] = std::sqrt(position + 2.0 * t * both + t * t * velocity + gained * gained);
     }
-    return p;
   };
-  // A tracker's errors are alike from frame to frame: a speed is known less well than white noise says.
-  const bool wheels = situation.user->on_wheels();
-  const double along_rate = wheels ? kVehicleAlongError : kPedestrianError;
-  const double across_rate = wheels ? kVehicleAcrossError : kPedestrianError;
-  Eigen::Matrix3d p = axis(along), q = axis(across);
-  p(1, 1) += along_rate * along_rate;
-  q(1, 1) += across_rate * across_rate;
-  const Eigen::Matrix3d f = singer_transition(kPredictionStep, model.time);
-  const Eigen::Matrix3d noise = singer_noise(kPredictionStep, model.time);
   Spread spread;
-  for (std::size_t i = 0; i < kPredictionPoints; ++i) {
-    spread.along[i] = std::sqrt(p(0, 0));
-    spread.across[i] = std::sqrt(q(0, 0));
-    p = f * p * f.transpose() + model.along * model.along * noise;
-    q = f * q * f.transpose() + model.across * model.across * noise;
-  }
+  deviations(along, walks ? param.pedestrian_speed : param.along_speed,
+             walks ? param.pedestrian_acceleration : param.along_acceleration, spread.along);
+  deviations(across, walks ? param.pedestrian_speed : param.across_speed,
+             walks ? param.pedestrian_acceleration : param.across_acceleration, spread.across);
   return spread;
 }
 

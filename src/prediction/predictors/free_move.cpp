@@ -70,7 +70,7 @@ PredictedTrajectory draw_free(const Situation& situation, const MotionFilterPara
 std::vector<PredictedTrajectory> FreeMovePredictor::predict(const PredictionContext& context,
                                                             const Situation& situation) const {
   const MotionFilterParam& param = context.config.filter;
-  const Spread spread = spread_of(situation, param);
+  const Spread spread = spread_of(situation, context.config.spread);
   std::vector<PredictedTrajectory> trajectories;
   if (situation.still()) {
     trajectories.push_back(draw_stand(situation, spread));

@@ -46,7 +46,7 @@ PredictedTrajectory draw_straight(const Situation& situation, const Point2& velo
 
 std::vector<PredictedTrajectory> SingleLanePredictor::predict(const PredictionContext& context,
                                                               const Situation& situation) const {
-  const Spread spread = spread_of(situation, context.config.filter);
+  const Spread spread = spread_of(situation, context.config.spread);
   const SpeedProfile profile = steady(situation.speed, context.config.speed);
   std::vector<PredictedTrajectory> trajectories;
   for (const LaneOption& way : situation.options) {
@@ -61,7 +61,7 @@ std::vector<PredictedTrajectory> SingleLanePredictor::predict(const PredictionCo
 
 std::vector<PredictedTrajectory> LaneSequencePredictor::predict(const PredictionContext& context,
                                                                 const Situation& situation) const {
-  const Spread spread = spread_of(situation, context.config.filter);
+  const Spread spread = spread_of(situation, context.config.spread);
   const SpeedProfile profile = steady(situation.speed, context.config.speed);
   std::vector<PredictedTrajectory> trajectories;
   double side = 0.0;  // of the likeliest change; none to the other side
@@ -84,7 +84,7 @@ std::vector<PredictedTrajectory> ExtrapolationPredictor::predict(const Predictio
                                                                  const Situation& situation) const {
   constexpr double kMeanTime = 0.5;  // [s] of the last points, whose mean speed counts
   constexpr double kNearLane = 1.0;  // [m]
-  const Spread spread = spread_of(situation, context.config.filter);
+  const Spread spread = spread_of(situation, context.config.spread);
   const auto& history = situation.user->history();
   double speed = situation.speed;
   if (history.size() >= 2) {
@@ -109,7 +109,7 @@ std::vector<PredictedTrajectory> RegionalPredictor::predict(const PredictionCont
                                                             const Situation& situation) const {
   constexpr double kDeviations = 2.0;
   constexpr double kMaxSpeed = 10.0;  // [m/s] nobody runs faster
-  const Spread spread = spread_of(situation, context.config.filter);
+  const Spread spread = spread_of(situation, context.config.spread);
   Point2 velocity = situation.filter.velocity();
   if (situation.still()) velocity.setZero();
   if (velocity.norm() > kMaxSpeed) velocity *= kMaxSpeed / velocity.norm();
@@ -134,7 +134,7 @@ std::vector<PredictedTrajectory> InteractionPredictor::predict(const PredictionC
                                                                const Situation& situation) const {
   const LaneOption* best = situation.best();
   if (best == nullptr) return {};
-  const Spread spread = spread_of(situation, context.config.filter);
+  const Spread spread = spread_of(situation, context.config.spread);
   const bool yields = context.ego.right_of_way_is_sure || std::abs(best->turn) > 0.35;
   std::vector<PredictedTrajectory> trajectories;
   for (int half = 0; half <= 6; ++half) {

@@ -131,7 +131,7 @@ std::vector<PredictedTrajectory> MoveSequencePredictor::predict(const Prediction
   const PredictionConfig& config = context.config;
   const std::vector<Way> ways = distinct_ways(situation, config.lane);
   if (ways.empty()) return {};
-  const Spread spread = spread_of(situation, config.filter);
+  const Spread spread = spread_of(situation, config.spread);
   const double urge_of_deviation = spread.along[kJudged] / way_of_urge();
   const auto total = static_cast<std::size_t>(config.lane.max_modes);
   const std::vector<std::size_t> counts = shares(ways.size(), total);

@@ -3,6 +3,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "relative_map/io/text.hpp"
+#include "relative_map/prediction/evaluators/mlp_evaluator.hpp"
+
 namespace relative_map {
 
 namespace {
@@ -77,6 +80,12 @@ PredictionNodeConfig make_prediction_config(const ParameterSet& parameters) {
   std::string text = "the configuration is refused:";
   for (const std::string& fault : faults) text += "\n  - " + fault;
   throw std::runtime_error(text);
+}
+
+std::shared_ptr<const core::Network> load_network(const core::PredictionConfig& config) {
+  if (config.network.empty()) return nullptr;
+  return std::make_shared<const core::Network>(
+      core::Network::parse(core::read_text(config.network), config.network, core::way_features()));
 }
 
 }  // namespace relative_map

@@ -31,8 +31,8 @@ class LateralMove {
 struct Spread {
   std::array<double, kPredictionPoints> along{}, across{};
 };
-/// Of the filter: what is not known now, and what its road user may do from now on.
-Spread spread_of(const Situation& situation, const MotionFilterParam& param);
+/// What is not known now, carried on at its speed, and what its road user may do from now on.
+Spread spread_of(const Situation& situation, const SpreadParam& param);
 
 /// Along a way, from where the road user is.
 PredictedTrajectory draw_on_way(const Situation& situation, const LaneOption& option,

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "relative_map/model/prediction_config.hpp"
+#include "relative_map/prediction/network.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
 #include "relative_map/ros/setup/parameters.hpp"
 
@@ -21,5 +23,9 @@ struct PredictionNodeConfig {
 
 /// The configuration, or std::runtime_error whose text lists every unknown key, wrong type and bad value.
 PredictionNodeConfig make_prediction_config(const ParameterSet& parameters);
+
+/// The network that the configuration names, for the evaluator mlp; none, if it names none. Throws
+/// std::runtime_error where it can't be read or is refused.
+std::shared_ptr<const core::Network> load_network(const core::PredictionConfig& config);
 
 }  // namespace relative_map
