@@ -111,7 +111,7 @@ def distance_to_path(point, path):
 
 
 def lane_hits(modes, truth, last):
-    """[(p, right)] of the ways that the modes take: right if the truth lies within 0.3 m of the nearest of them and
+    """{lane: (p, right)} of the ways that the modes take: right if the truth lies within 0.3 m of the nearest of them and
     2 m of it. Ways are told apart by their lane."""
     ways = {}
     for mode in modes:
@@ -120,7 +120,7 @@ def lane_hits(modes, truth, last):
         way[1].append(mode['xy'])
     gaps = {lane: min(distance_to_path(truth[last], path) for path in way[1]) for lane, way in ways.items()}
     nearest = min(gaps.values())
-    return [(way[0], gaps[lane] < min(MISS, nearest + 0.3)) for lane, way in ways.items()]
+    return {lane: (way[0], gaps[lane] < min(MISS, nearest + 0.3)) for lane, way in ways.items()}
 
 
 def score_object(entry, track, result):
@@ -150,8 +150,9 @@ def score_object(entry, track, result):
                'miss': float(fde > MISS), 'along': along, 'across': across,
                'in3': None if sigma is None else float(max(sigma) <= 3.0), 'deviations': sigma}
         if modes[0]['lane'] and horizon in (3.0, 5.0):
-            row['hits'] = lane_hits(modes, truth, count - 1)
-            row['top'] = float(max(row['hits'])[1])
+            hits = lane_hits(modes, truth, count - 1)
+            row['hits'] = list(hits.values())
+            row['top'] = float(hits[modes[0]['lane']][1])
         row['best_p'] = modes[min(range(len(all_modes)), key=lambda i: all_modes[i][1])]['p']
         row['hit_modes'] = [(mode['p'], e == min(all_modes)) for mode, e in zip(modes, all_modes)]
         result.setdefault((entry['type'], horizon), Errors()).add(row)
