@@ -42,7 +42,9 @@ PredictionStatus status(std::uint8_t code, const std::string& message) {
 }  // namespace
 
 PredictionEngine::PredictionEngine(const PredictionNodeConfig& config, LinkTransforms transforms)
-    : config_(config), transforms_(std::move(transforms)), prediction_(config.prediction, load_network(config.prediction)) {}
+    : config_(config),
+      transforms_(std::move(transforms)),
+      prediction_(config.prediction, load_network(config.prediction)) {}
 
 void PredictionEngine::on_localization(const LocalizationEstimateConstPtr& message,
                                        const ros::Time& received) {
