@@ -47,6 +47,19 @@ class NavigationLineLive(ToolTest):
         self.assertEqual([line.path_priority for line in message.navigation_path], [3, 2])
         self.assertLess(len(message.navigation_path[0].path.path_point), 40)
 
+    def test_ends_when_interrupted_without_a_master(self):
+        self.write('a.smoothed', smoothed(straight(100.0)))
+        os.environ['ROS_MASTER_URI'], before = 'http://127.0.0.1:1', os.environ['ROS_MASTER_URI']
+        self.addCleanup(os.environ.update, ROS_MASTER_URI=before)
+        for words in (('publish', 'a.smoothed'), ('record', '--live', 'line.smoothed')):
+            for sent in (signal.SIGINT, signal.SIGTERM):
+                process = self.start(*words)
+                while 'waiting for a master' not in process.stdout.readline():
+                    self.assertIsNone(process.poll())
+                process.send_signal(sent)
+                self.assertNotEqual(process.wait(20.0), 0)
+        self.assertEqual(os.listdir(self.folder), ['a.smoothed'])
+
     def test_records_live_until_interrupted(self):
         publisher = rospy.Publisher('localization', Odometry, queue_size=1000)
         process = self.start('record', '--live', 'line.smoothed')

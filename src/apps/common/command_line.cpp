@@ -109,6 +109,11 @@ double CommandLine::number(const std::string& option, double otherwise, double l
   return has(option) ? in_range(option, text(option), low, high) : otherwise;
 }
 
+std::vector<std::string> CommandLine::texts(const std::string& list) const {
+  const auto found = values_.find(list);
+  return found == values_.end() ? std::vector<std::string>() : found->second;
+}
+
 std::vector<double> CommandLine::numbers(const std::string& list, std::size_t count, double low,
                                          double high) const {
   std::vector<double> numbers;

@@ -17,7 +17,7 @@ struct UsageError : std::runtime_error {
 /// Everything throws UsageError, a sentence. Numbers may be negative; an option may be given once.
 class CommandLine {
  public:
-  /// `lists` are options of several values: "--list A B C".
+  /// `lists` are options of several values, "--list A B C", and may be given again.
   CommandLine(const std::vector<std::string>& words, const std::set<std::string>& options,
               const std::set<std::string>& flags = {}, const std::set<std::string>& lists = {});
 
@@ -28,6 +28,7 @@ class CommandLine {
   std::string text(const std::string& option, const std::string& otherwise = "") const;
   double number(const std::string& option, double otherwise, double low, double high) const;
   /// Of a list; empty if it is not given.
+  std::vector<std::string> texts(const std::string& list) const;
   std::vector<double> numbers(const std::string& list, std::size_t count, double low, double high) const;
 
  private:

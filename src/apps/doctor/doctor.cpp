@@ -12,6 +12,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "command_line.hpp"
 #include "doctor_master.hpp"
 #include "relative_map/ros/messages/message_check.hpp"
 #include "relative_map/ros/setup/reconfigure.hpp"
@@ -33,43 +34,6 @@ constexpr const char* kUsage =
     "  _node:=NAME      name of the map node, to read its parameters (default relative_map)\n"
     "  TOPIC:=OTHER     remaps navigation, localization, chassis, perception/lane_markers or relative_map,\n"
     "                   as for the map node\n";
-
-struct Arguments {
-  bool help = false;
-  double duration = 5.0;  ///< [s]
-  std::string name_space;
-};
-
-double parse_duration(const std::string& word) {
-  std::size_t end = 0;
-  double duration = 0.0;
-  try {
-    duration = std::stod(word, &end);
-  } catch (const std::logic_error&) {
-  }
-  if (end != word.size() || !(duration >= 1.0 && duration <= 600.0)) {
-    throw std::runtime_error("--duration is '" + word + "', but must be a number of seconds from 1 to 600");
-  }
-  return duration;
-}
-
-Arguments parse(const std::vector<std::string>& words) {
-  Arguments arguments;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--help" || words[i] == "-h") {
-      arguments.help = true;
-    } else if (words[i] == "--duration") {
-      if (i + 1 == words.size()) throw std::runtime_error("--duration needs a value");
-      arguments.duration = parse_duration(words[++i]);
-    } else if (words[i] == "--namespace") {
-      if (i + 1 == words.size()) throw std::runtime_error("--namespace needs a value");
-      arguments.name_space = words[++i];
-    } else {
-      throw std::runtime_error("unexpected argument '" + words[i] + "'; see --help");
-    }
-  }
-  return arguments;
-}
 
 /// Gathers observations on one thread.
 class Listener {
@@ -245,32 +209,23 @@ int report(std::vector<doctor::Finding> findings) {
   return wrong == 0 ? 0 : 1;
 }
 
-int run(int argc, char** argv) {
-  std::vector<std::string> words;
-  ros::removeROSArgs(argc, argv, words);
-  const Arguments arguments = parse({words.begin() + 1, words.end()});
-  if (arguments.help) {
-    std::cout << kUsage;
-    return 0;
-  }
-  ros::init(argc, argv, "doctor", ros::init_options::AnonymousName);
+int run(const std::vector<std::string>& words) {
+  const CommandLine line(words, {"--duration", "--namespace"});
+  line.files(0, 0, "");
+  const double duration = line.number("--duration", 5.0, 1.0, 600.0);
   if (!ros::master::check()) {
     throw std::runtime_error("there is no master at " + ros::master::getURI() +
                              ": start the system first, or set ROS_MASTER_URI");
   }
-  const ros::NodeHandle nh(arguments.name_space), private_nh("~");
+  const ros::NodeHandle nh(line.text("--namespace")), private_nh("~");
   Listener listener(nh, private_nh);
-  return report(doctor::diagnose(listener.listen_for(arguments.duration)));
+  return report(doctor::diagnose(listener.listen_for(duration)));
 }
 
 }  // namespace
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
-  try {
-    return relative_map::run(argc, argv);
-  } catch (const std::exception& fault) {
-    std::cerr << "doctor: " << fault.what() << "\n";
-    return 2;
-  }
+  ros::init(argc, argv, "doctor", ros::init_options::AnonymousName);  // takes the words that are its own
+  return relative_map::run_tool("doctor", relative_map::kUsage, argc, argv, relative_map::run, 2);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "master.hpp"
 #include "navigation_line_command.hpp"
 #include "orderly_end.hpp"
 #include "relative_map/ros/messages/conversions.hpp"
@@ -56,6 +57,7 @@ int run_publish(const Words& words, const Remappings& remappings) {
   info.frame_id = header.frame_id.empty() ? "map" : header.frame_id;
 
   ros::init(remappings, "navigator");
+  wait_for_master();
   end_in_order();
   ros::NodeHandle nh;
   ros::Publisher publisher = nh.advertise<NavigationInfo>("navigation", 1, true);

@@ -14,6 +14,7 @@
 
 #include "bag_input.hpp"
 #include "drive_journal.hpp"
+#include "master.hpp"
 #include "navigation_line_command.hpp"
 #include "orderly_end.hpp"
 #include "pose_collector.hpp"
@@ -203,11 +204,9 @@ void print_remarks(const PoseCollector& poses, const core::Recording& recording,
 }
 
 /// From the bag that is named, or from what is published. `source` is what a fault is about.
-void collect(const CommandLine& line, const std::string& source, const Remappings& remappings,
-             tf2_ros::Buffer& transforms, DriveJournal* journal, PoseCollector& poses) {
+void collect(const CommandLine& line, const std::string& source, tf2_ros::Buffer& transforms,
+             DriveJournal* journal, PoseCollector& poses) {
   if (journal != nullptr) {
-    ros::init(remappings, "navigation_line_record");
-    end_in_order();
     const tf2_ros::TransformListener listener(transforms);
     listen(source, line.number("--duration", 0.0, 0.0, 1e6), *journal, poses);
   } else {
@@ -252,8 +251,13 @@ int run_record(const Words& words, const Remappings& remappings) {
   tf2_ros::Buffer transforms;
   PoseCollector poses(base_frame, convention, link_transforms(transforms));
   poses.listen_to(line.text("--source"));
+  if (live) {
+    ros::init(remappings, "navigation_line_record");
+    wait_for_master();
+    end_in_order();
+  }
   const auto journal = live ? std::make_unique<DriveJournal>(files.back()) : nullptr;
-  collect(line, source, remappings, transforms, journal.get(), poses);
+  collect(line, source, transforms, journal.get(), poses);
   core::LineFile file;
   core::Recording recording;
   CarriedPoses carried;

@@ -1,10 +1,11 @@
 // Finds a route over a lane graph without ROS.
 #include <iostream>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "navigation_line_command.hpp"
+#include "command_line.hpp"
 #include "relative_map/io/lane_graph_file.hpp"
 #include "relative_map/route/route_search.hpp"
 #include "route_command.hpp"
@@ -30,36 +31,28 @@ struct Arguments {
   std::set<std::string> closed;
 };
 
-/// Here options take two words, and may come more than once.
-Arguments parse(const std::vector<std::string>& words) {
-  Arguments arguments;
-  std::size_t i = 0;
-  const auto next = [&](const std::string& option) {
-    if (i >= words.size()) throw UsageError(option + " lacks a value");
-    return words[i++];
-  };
-  const auto place = [&](const std::string& option) {
-    core::LanePosition position;
-    position.lane_id = next(option);
-    position.s = parse_numbers(option, next(option), 1, 1).front();
-    return position;
-  };
-  while (i < words.size()) {
-    const std::string option = words[i++];
-    if (option == "--graph") {
-      arguments.graph = next(option);
-    } else if (option == "--from") {
-      arguments.from.push_back(place(option));
-    } else if (option == "--via") {
-      arguments.via.push_back(place(option));
-    } else if (option == "--to") {
-      arguments.to.push_back(place(option));
-    } else if (option == "--closed") {
-      arguments.closed.insert(next(option));
-    } else {
-      throw UsageError("unknown option " + option);
-    }
+/// Each is a lane, and how far along it.
+std::vector<core::LanePosition> places(const CommandLine& line, const std::string& option) {
+  const std::vector<std::string> words = line.texts(option);
+  if (words.size() % 2 != 0) throw UsageError(option + " needs a lane, and how far along it [m]");
+  std::vector<core::LanePosition> places;
+  for (std::size_t i = 0; i < words.size(); i += 2) {
+    places.emplace_back();
+    places.back().lane_id = words[i];
+    places.back().s = parse_number(option, words[i + 1]);
   }
+  return places;
+}
+
+Arguments parse(const std::vector<std::string>& words) {
+  const CommandLine line(words, {"--graph"}, {}, {"--from", "--via", "--to", "--closed"});
+  line.files(0, 0, "");
+  const std::vector<std::string> closed = line.texts("--closed");
+  Arguments arguments{line.text("--graph"),
+                      places(line, "--from"),
+                      places(line, "--via"),
+                      places(line, "--to"),
+                      {closed.begin(), closed.end()}};
   if (arguments.graph.empty()) throw UsageError("--graph is needed");
   if (arguments.from.size() != 1 || arguments.to.size() != 1)
     throw UsageError("one --from and one --to are needed");

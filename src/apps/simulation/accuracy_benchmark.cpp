@@ -3,8 +3,6 @@
 #include <sys/wait.h>
 
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -12,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "relative_map/io/navigation_line_file.hpp"
 #include "relative_map/simulation/accuracy_report.hpp"
 #include "relative_map/simulation/world.hpp"
@@ -59,66 +58,40 @@ Exit codes: 0 done, 1 a map broke the output contract or a file could not be wri
 )";
 
 struct Options {
-  bool help = false, list = false;
+  bool list = false;
   std::string csv, plot;
   double rows = 0.0;  ///< [s]; 0: none
   BenchmarkOptions benchmark;
 };
 
-double number_of(const std::string& option, const std::string& text, double low, double high) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(number >= low && number <= high)) {
-    std::ostringstream fault;
-    fault << option << " is '" << text << "', but must be a number in [" << low << ", " << high << "]";
-    throw std::invalid_argument(fault.str());
-  }
-  return number;
-}
-
 Options parse(const std::vector<std::string>& words) {
+  const CommandLine line(words, {"--seeds", "--scale", "--rows", "--csv", "--plot"},
+                         {"--list", "--harsh", "--worlds", "--perception"},
+                         {"--scene", "--world", "--line", "--method"});
+  line.files(0, 0, "");
   Options options;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string& name = words[i];
-    const auto value = [&] {
-      if (i + 1 == words.size()) throw std::invalid_argument(name + " lacks a value");
-      return words[++i];
-    };
-    if (name == "--help" || name == "-h") {
-      options.help = true;
-    } else if (name == "--list") {
-      options.list = true;
-    } else if (name == "--seeds") {
-      options.benchmark.seeds = static_cast<std::uint64_t>(number_of(name, value(), 1.0, 1e4));
-    } else if (name == "--scale") {
-      options.benchmark.level.scale = number_of(name, value(), 0.0, 10.0);
-    } else if (name == "--harsh") {
-      options.benchmark.level.harsh = true;
-    } else if (name == "--scene") {
-      options.benchmark.scenes.push_back(value());
-    } else if (name == "--worlds") {
-      for (const World& world : worlds()) options.benchmark.worlds.push_back(world.name);
-    } else if (name == "--world") {
-      for (std::string& world : worlds_named(value())) options.benchmark.worlds.push_back(std::move(world));
-    } else if (name == "--perception") {
-      options.benchmark.markers_alone = true;
-    } else if (name == "--rows") {
-      options.rows = number_of(name, value(), 0.1, 1e4);
-    } else if (name == "--line") {
-      options.benchmark.lines.push_back(read_navigation_line(value()));
-    } else if (name == "--method") {
-      options.benchmark.methods.push_back(value());
-    } else if (name == "--csv") {
-      options.csv = value();
-    } else if (name == "--plot") {
-      options.plot = value();
-    } else {
-      throw std::invalid_argument("unknown argument '" + name + "'");
-    }
-  }
+  options.list = line.has("--list");
+  options.csv = line.text("--csv");
+  options.plot = line.text("--plot");
+  options.rows = line.number("--rows", 0.0, 0.1, 1e4);
   BenchmarkOptions& benchmark = options.benchmark;
-  if (!benchmark.worlds.empty() && benchmark.methods.empty())
+  benchmark.seeds =
+      static_cast<std::uint64_t>(line.number("--seeds", static_cast<double>(benchmark.seeds), 1.0, 1e4));
+  benchmark.level.scale = line.number("--scale", benchmark.level.scale, 0.0, 10.0);
+  benchmark.level.harsh = line.has("--harsh");
+  benchmark.markers_alone = line.has("--perception");
+  benchmark.scenes = line.texts("--scene");
+  benchmark.methods = line.texts("--method");
+  if (line.has("--worlds")) {
+    for (const World& world : worlds()) benchmark.worlds.push_back(world.name);
+  }
+  for (const std::string& name : line.texts("--world")) {
+    for (std::string& world : worlds_named(name)) benchmark.worlds.push_back(std::move(world));
+  }
+  for (const std::string& file : line.texts("--line")) benchmark.lines.push_back(read_navigation_line(file));
+  if (!benchmark.worlds.empty() && benchmark.methods.empty()) {
     benchmark.methods = {"line", "filter", "estimator"};
+  }
   return options;
 }
 
@@ -186,11 +159,7 @@ int report(const Options& options, const BenchmarkResult& result) {
   return code;
 }
 
-int run(const Options& options) {
-  if (options.help || options.list) {
-    options.help ? void(std::cout << kHelp) : list();
-    return 0;
-  }
+int measure(const Options& options) {
   std::ofstream maps;
   const double period = options.rows;
   const std::string maps_file = options.plot + "/maps.csv";
@@ -228,17 +197,21 @@ int run(const Options& options) {
   return code;
 }
 
+int run(const std::vector<std::string>& words) {
+  try {
+    const Options options = parse(words);
+    if (!options.list) return measure(options);
+    list();
+    return 0;
+  } catch (const std::invalid_argument& fault) {  // a scene, world or method of no such name
+    throw UsageError(fault.what());
+  }
+}
+
 }  // namespace
 }  // namespace relative_map::core
 
 int main(int argc, char** argv) {
-  try {
-    return relative_map::core::run(relative_map::core::parse({argv + 1, argv + argc}));
-  } catch (const std::invalid_argument& fault) {
-    std::cerr << "accuracy_benchmark: " << fault.what() << "; see accuracy_benchmark --help\n";
-    return 2;
-  } catch (const std::exception& fault) {
-    std::cerr << "accuracy_benchmark: " << fault.what() << "\n";
-    return 1;
-  }
+  using namespace relative_map;
+  return run_tool("accuracy_benchmark", core::kHelp, argc, argv, core::run);
 }
