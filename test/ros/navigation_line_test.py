@@ -109,12 +109,23 @@ class NavigationLine(ToolTest):
     def test_check_lists_faults_with_their_places(self):
         points = straight(100.0)
         self.write('good.smoothed', smoothed(points))
-        self.assertIn('fit to be driven on', self.expect('check', 'good.smoothed'))
+        self.assertIn('good.smoothed: fit to be driven on', self.expect('check', 'good.smoothed'))
         self.write('bad.smoothed', smoothed(points[:50] + points[70:] + points[-1:]))
         run = self.run_tool('check', 'good.smoothed', 'bad.smoothed')
         self.assertEqual(run.returncode, 1)
         self.assertIn('bad.smoothed: gap at point 50, s = 24.5 m', run.stdout)
         self.assertIn('bad.smoothed: duplicate at point 181', run.stdout)
+
+    def test_check_begins_with_its_verdict_and_what_to_do(self):
+        self.write('raw.smoothed', smoothed([(0.5 * i, 0.3 * (i % 2)) for i in range(200)]))
+        first = self.run_tool('check', 'raw.smoothed').stdout.splitlines()[0]
+        self.assertIn('raw.smoothed: not fit to be driven on', first)
+        self.assertIn('smooth it', first)
+        points = straight(100.0)
+        self.write('gap.smoothed', smoothed(points[:50] + points[70:]))
+        first = self.run_tool('check', 'gap.smoothed').stdout.splitlines()[0]
+        self.assertIn('gap.smoothed: not fit to be driven on, 1 fault', first)
+        self.assertNotIn('smooth it', first)
 
     def test_check_compares_files(self):
         line = smoothed(straight(100.0, y=10.0, start=690000.0))

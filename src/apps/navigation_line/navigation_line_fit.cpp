@@ -1,4 +1,5 @@
 // Subcommands of navigation_line that make a line fit to be driven on, or say whether it is.
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <sstream>
@@ -78,10 +79,31 @@ int run_smooth(const Words& words, const Remappings&) {
   return 0;
 }
 
+/// What noise makes of a recording, and smoothing mends.
+bool is_rough(const core::LineFault& fault) {
+  return fault.kind == "kink" || fault.kind == "curvature" || fault.kind == "curvature rate";
+}
+
+/// In one line whether it can be driven on, and if not, what to do first.
+void print_verdict(const std::string& path, const core::LineFile& file,
+                   const std::vector<core::LineFault>& faults) {
+  if (faults.empty()) {
+    std::printf("%s: fit to be driven on, %zu points, %s, frame %s\n", path.c_str(), file.line.points.size(),
+                core::describe(file.header.reference).c_str(),
+                file.header.frame_id.empty() ? "not named" : ("'" + file.header.frame_id + "'").c_str());
+    return;
+  }
+  const auto rough = static_cast<std::size_t>(std::count_if(faults.begin(), faults.end(), is_rough));
+  std::printf("%s: not fit to be driven on, %zu fault%s%s\n", path.c_str(), faults.size(),
+              faults.size() == 1 ? "" : "s",
+              2 * rough > faults.size() ? ", as a raw recording: smooth it (navigation_line smooth)" : "");
+}
+
 /// The number of faults.
 std::size_t check_file(const std::string& path, const core::LineFile& file,
                        const core::LineCheckParam& param) {
   const std::vector<core::LineFault> faults = core::check_line(file.line, file.header, param);
+  print_verdict(path, file, faults);
   for (const core::LineFault& fault : faults) {
     std::printf("%s: %s at point %zu, s = %.1f m: %s", path.c_str(), fault.kind.c_str(), fault.point, fault.s,
                 fault.what.c_str());
@@ -89,11 +111,6 @@ std::size_t check_file(const std::string& path, const core::LineFile& file,
       std::printf(" (the worst of %zu, from s = %.1f m to %.1f m)", fault.count, fault.from, fault.to);
     }
     std::printf("\n");
-  }
-  if (faults.empty()) {
-    std::printf("%s: fit to be driven on, %zu points, %s, frame %s\n", path.c_str(), file.line.points.size(),
-                core::describe(file.header.reference).c_str(),
-                file.header.frame_id.empty() ? "not named" : ("'" + file.header.frame_id + "'").c_str());
   }
   return faults.size();
 }
@@ -156,7 +173,7 @@ Example: navigation_line smooth raw.smoothed lane.smoothed
 const Command kCheck = {"check", "is a file fit to be driven on?",
                         R"(Usage: navigation_line check FILE... [OPTION]...
 
-Lists every fault with its place: gaps, kinks, duplicate points, s or a line that goes backward, curvature above the
+Says whether it is, and lists every fault with its place: gaps, kinks, duplicate points, s or a line that goes backward, curvature above the
 vehicle's limit, curvature that changes faster than the vehicle can steer (at up to 15 m/s, and 3 m/s² sideways), also at
 the seam of a loop, a line beside itself, coordinates that can't be of their zone, files that don't fit to each other.
 Exit code 0: none; 1: some.
