@@ -14,7 +14,8 @@ import rostest
 import yaml
 
 PACKAGE = rospkg.RosPack().get_path('relative_map')
-NEEDED_ARGUMENTS = {'demo.launch': ['navigation_lines:=a.smoothed b.smoothed']}
+NEEDED_ARGUMENTS = {'demo.launch': ['navigation_lines:=a.smoothed b.smoothed'],
+                    'ndt_localizer.launch': ['map:=/a/map']}
 
 
 def load(name, *arguments):

@@ -19,12 +19,8 @@ using testing::HasSubstr;
 
 class PointCloudFileTest : public test::TemporaryFolder {
  protected:
-  std::string put(const std::string& name, const std::string& content) {
-    write_whole_file(path(name), content);
-    return path(name);
-  }
   std::string fault(const std::string& name, const std::string& content) {
-    const std::string file = put(name, content);
+    const std::string file = write(name, content);
     return fault_of([&] { read_point_cloud(file); });
   }
 };
@@ -94,11 +90,11 @@ TEST_F(PointCloudFileTest, PointsThatAreNoneAreLeftOut) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
   const std::string bytes = floats({1, 2, 3, nan, 2, 3, 1, inf, 3, 1e30f, 0, 0, 4, 5, 6});
-  const CloudFile file = read_point_cloud(put("a.pcd", header("5", "binary") + bytes));
+  const CloudFile file = read_point_cloud(write("a.pcd", header("5", "binary") + bytes));
   ASSERT_EQ(file.cloud.size(), 2u);
   EXPECT_EQ(file.dropped, 3u);
   EXPECT_EQ(file.cloud.points[1], Eigen::Vector3d(4, 5, 6));
-  const CloudFile text = read_point_cloud(put("b.pcd", header("2", "ascii") + "nan nan nan\n1 2.5 -3e-1\n"));
+  const CloudFile text = read_point_cloud(write("b.pcd", header("2", "ascii") + "nan nan nan\n1 2.5 -3e-1\n"));
   ASSERT_EQ(text.cloud.size(), 1u);
   EXPECT_EQ(text.cloud.points[0], Eigen::Vector3d(1, 2.5, -0.3));
 }
@@ -113,7 +109,7 @@ TEST_F(PointCloudFileTest, FieldsOfAnyTypeAndOrder) {
   place(10, 2.5);
   place(18, -3.5);
   const std::string head = header("1", "binary", "t intensity x y z pad", "4 2 4 8 8 1", "U U F F F U");
-  const CloudFile file = read_point_cloud(put("a.pcd", head + point));
+  const CloudFile file = read_point_cloud(write("a.pcd", head + point));
   ASSERT_EQ(file.cloud.size(), 1u);
   EXPECT_EQ(file.cloud.points[0], Eigen::Vector3d(1.5, 2.5, -3.5));
   EXPECT_EQ(file.cloud.intensity[0], 77.0);
@@ -138,7 +134,7 @@ TEST_F(PointCloudFileTest, HeadersThatLieAreTold) {
   EXPECT_THAT(fault("a.pcd", header("2", "binary") + bytes), HasSubstr("cut off"));
   EXPECT_THAT(fault("a.pcd", header("399999999", "binary") + bytes), HasSubstr("cut off"));
   EXPECT_THAT(fault("a.pcd", header("399999999", "ascii") + "1 2 3\n"), HasSubstr("cut off"));
-  EXPECT_THAT(fault("a.pcd", header("99999999999999999999", "binary") + bytes), HasSubstr("POINTS"));
+  EXPECT_THAT(fault("a.pcd", header("99999999999999999999", "binary") + bytes), HasSubstr("no number up to"));
   EXPECT_THAT(fault("a.pcd", header("-1", "binary") + bytes), HasSubstr("WIDTH"));
   EXPECT_THAT(fault("a.pcd", header("1", "binary", "x y z", "4 4") + bytes), HasSubstr("SIZE"));
   EXPECT_THAT(fault("a.pcd", header("1", "binary", "x y z", "4 4 3") + bytes), HasSubstr("3 bytes"));

@@ -28,19 +28,21 @@ Files: .pcd (ascii, binary, binary_compressed; metres) or KITTI's .bin (float32 
                           target_from_source to begin with: metres, and radians about fixed axes,
                           R = Rz(yaw) Ry(pitch) Rx(roll) (default: all 0)
   --max-correction M      [m] a result farther from the guess is not believed (default 3)
+  --weigh fusion|intensity|altitude   what pyramid goes by (default fusion; where the target is too thin for its
+                          intensity, altitude alone)
   --repeat N              times that it is done; the time is the median (default 1)
   --json                  one JSON object on standard output, with
     target_from_source    4 x 4, row by row; metres
     covariance            6 x 6 of x y z [m] and turns about the target's x y z axes [rad]
     score                 ndt: mean over the points of the sum over voxels, as in Magnusson (2009), larger is
-                          better; pyramid: height of the peak, (0, 1]
+                          better; pyramid: exp(-q / 2), q the mean squared distance of the cells
     likelihood, overlap   [0, 1] how well the points lie on the surfaces; share of points that meet the target
     upright_likelihood    [0, 1] the likelihood of the points that do not lie on the ground (ndt)
     condition             [-] information in the least known direction over that in the best known
     iterations            steps taken (pyramid: candidates looked at)
     ms                    CPU time of one alignment on one core, without reading, filtering and map building
     prepare_ms, map_ms    CPU time of filtering the clouds; of building the map
-    converged, believed   true or false
+    converged, believed   true or false (pyramid: converged is always true)
     reasons, remarks      lists of sentences: why it is not believed; what else is worth knowing
     target_points, source_points   how many took part
 Exit codes: 0 done (believed or not), 1 a file can't be read, 2 bad arguments.
@@ -48,7 +50,8 @@ Exit codes: 0 done (believed or not), 1 a file can't be read, 2 bad arguments.
 
 int run(const std::vector<std::string>& words) {
   const CommandLine line(
-      words, {"--method", "--resolution", "--leaf", "--near", "--far", "--max-correction", "--repeat"},
+      words,
+      {"--method", "--resolution", "--leaf", "--near", "--far", "--max-correction", "--repeat", "--weigh"},
       {"--json"}, {"--guess"});
   const std::vector<std::string>& files = line.files(2, 2, "TARGET and SOURCE");
   RegistrationRequest request;
@@ -57,6 +60,14 @@ int run(const std::vector<std::string>& words) {
     throw UsageError("--method is '" + method + "', but must be ndt or pyramid");
   }
   request.pyramid = method == "pyramid";
+  const std::string weigh = line.text("--weigh", "fusion");
+  if (weigh == "intensity") {
+    request.weighing = core::PyramidWeighing::kIntensity;
+  } else if (weigh == "altitude") {
+    request.weighing = core::PyramidWeighing::kAltitude;
+  } else if (weigh != "fusion") {
+    throw UsageError("--weigh is '" + weigh + "', but must be fusion, intensity or altitude");
+  }
   request.resolution = request.pyramid ? line.number("--resolution", 0.125, 0.05, 1.0)
                                        : line.number("--resolution", 1.0, 0.5, 20.0);
   request.leaf = line.number("--leaf", 0.5, 0.0, 20.0);

@@ -67,6 +67,42 @@ Registration register_by_ndt(const core::PointCloud& target, const core::PointCl
   return result;
 }
 
+Registration register_by_pyramid(const core::PointCloud& target, const core::PointCloud& source,
+                                 const RegistrationRequest& request) {
+  Registration result;
+  core::PointCloud all, scan;
+  result.prepare_ms = median_ms(1, [&] {
+    all = request.farthest > 0.0 ? core::crop(target, request.nearest, request.farthest) : target;
+    scan = core::crop(source, request.nearest, request.farthest > 0.0 ? request.farthest : 100.0);
+  });
+  const Eigen::Vector2d origin = all.empty() ? Eigen::Vector2d::Zero().eval()
+                                             : all.points.front().head<2>().array().floor().matrix().eval();
+  core::PyramidMap map(request.resolution, origin);
+  result.map_ms = median_ms(1, [&] {
+    map.add(all);
+    map.finish();
+  });
+  core::PyramidParam param;
+  param.weighing = request.weighing;
+  core::PyramidMatch found;
+  result.ms =
+      median_ms(request.repeat, [&] { found = core::match_pyramid(map, scan, request.guess, param); });
+  result.target_from_source = found.map_from_body;
+  result.covariance = found.covariance;
+  result.score = result.likelihood = found.score;
+  result.overlap = found.coverage;
+  result.iterations = found.candidates;
+  result.reasons = found.reasons;
+  result.remarks = found.remarks;
+  result.converged = found.candidates > 0;
+  const double correction = (found.map_from_body.translation() - request.guess.translation()).norm();
+  if (correction > request.max_correction) result.reasons.push_back("the result is too far from the guess");
+  result.believed = result.reasons.empty();
+  result.target_points = all.size();
+  result.source_points = scan.size();
+  return result;
+}
+
 }  // namespace
 
 double cpu_ms() {
@@ -95,8 +131,8 @@ Eigen::Isometry3d pose_of(const std::vector<double>& numbers) {
 
 Registration register_clouds(const core::PointCloud& target, const core::PointCloud& source,
                              const RegistrationRequest& request) {
-  if (request.pyramid) throw std::runtime_error("the method pyramid is not there yet");
-  return register_by_ndt(target, source, request);
+  return request.pyramid ? register_by_pyramid(target, source, request)
+                         : register_by_ndt(target, source, request);
 }
 
 }  // namespace relative_map

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "relative_map/localization/pyramid/pyramid_matcher.hpp"
 #include "relative_map/model/point_cloud.hpp"
 
 namespace relative_map {
@@ -11,6 +12,7 @@ namespace relative_map {
 /// What register_clouds is asked for. Defaults and units as in its help.
 struct RegistrationRequest {
   bool pyramid = false;
+  core::PyramidWeighing weighing = core::PyramidWeighing::kFusion;
   double resolution = 1.0;      ///< [m]
   double leaf = 0.5;            ///< [m]
   double nearest = 1.0;         ///< [m]
