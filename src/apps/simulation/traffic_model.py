@@ -22,6 +22,8 @@ CHANGE_THRESHOLD = 0.2  # [m/s^2]
 CHANGE_TIME = 4.0  # [s]
 HARDEST_BRAKING = 8.0  # [m/s^2]
 WALK = 1.3  # [m/s]
+EGO_ROOM = 250.0  # [m] before the vehicle nobody changes onto its lane
+EGO_REACH = 120.0  # [m] before the vehicle nobody holds it up
 
 
 def idm(v, wanted, gap, closing):
@@ -138,7 +140,7 @@ class Traffic:
             s = 45.0 + 32.0 * (i // lanes) + self.random.uniform(-6.0, 6.0)
             wanted = speed * self.random.uniform(0.75, 1.15)
             taken[lane].append(s)
-            self.cars.append(Car('car %d' % i, lane, s, 0.8 * wanted, wanted))
+            self.cars.append(Car('car %d' % i, lane, s, wanted, wanted))
         self.parked = None
         if cars and lanes > 1:
             self.parked = Car('parked', lanes - 1, min(0.6 * road.length, 350.0), 0.0, 0.1)
@@ -192,6 +194,9 @@ class Traffic:
             ahead, behind = self._neighbours(lane, car.s, ego, car)
             if (ahead and ahead[0] < STANDSTILL_GAP) or (behind and behind[0] < STANDSTILL_GAP):
                 continue
+            # The vehicle does not brake for others: nobody but the one that cuts in changes onto its lane before it.
+            if ego and 0.0 < car.s - ego[0] < EGO_ROOM and abs(ego[1] - self.road.offset(lane, ego[0])) < 1.6:
+                continue
             gain = self._acceleration(car.v, car.wanted, ahead) - now
             if behind:
                 wanted = behind[2].wanted if behind[2] else max(1.0, 1.2 * behind[1])
@@ -203,6 +208,13 @@ class Traffic:
             if gain > CHANGE_THRESHOLD and (best is None or gain > best[0]):
                 best = (gain, lane)
         return best[1] if best else None
+
+    def _haste(self, car, ego):
+        """[m/s] that one before the vehicle drives at least: the vehicle follows its line whoever is there."""
+        if ego is None or car is self.parked or not 0.0 < car.s - ego[0] < EGO_REACH:
+            return 0.0
+        near = min(abs(ego[1] - self.road.offset(lane, ego[0])) for lane in car.lanes())
+        return 1.2 * ego[2] + 1.0 if near < 1.6 else 0.0
 
     def _cut_in(self, ego):
         car = self.cutter
@@ -216,7 +228,8 @@ class Traffic:
         """On by STEP."""
         for car in self.cars:
             leaders = [self._neighbours(lane, car.s, ego, car)[0] for lane in car.lanes()]
-            car.acceleration = min(self._acceleration(car.v, car.wanted, ahead) for ahead in leaders)
+            wanted = max(car.wanted, self._haste(car, ego))
+            car.acceleration = min(self._acceleration(car.v, wanted, ahead) for ahead in leaders)
         for car in self.cars:
             if car is self.parked or car.changes() or car is self.cutter:
                 continue
@@ -248,7 +261,7 @@ class Traffic:
             hurry = self.time > 8.0 and all(
                 not 0.0 < pedestrian.s - s < 10.0 + v * v / (2.0 * COMFORTABLE_BRAKING) + v for s, v in comers)
             pedestrian.walks = self.time > 2.0 and (free or hurry) and not (
-                ego and 0.0 < pedestrian.s - ego[0] < 5.0 + ego[2] * (self.cross / WALK))
+                ego and 0.0 < pedestrian.s - ego[0] < EGO_REACH + ego[2] * (self.cross / WALK))
         if pedestrian.walks:
             pedestrian.way += STEP * WALK
             pedestrian.walks = pedestrian.way < self.cross
