@@ -166,4 +166,27 @@ WhichLane::Place WhichLane::likeliest() const {
           share / belief_.sum()};
 }
 
+double WhichLane::share_near(double offset) const {
+  double share = 0.0;
+  for (int i = 0; i < kCells; ++i) {
+    if (std::abs(offset_of(i) - offset) <= kNear) share += belief_[i];
+  }
+  return share / belief_.sum();
+}
+
+double WhichLane::share_alike(const Place& place, const Road& road) const {
+  const auto nearer = [&](double a, double b) {
+    return std::abs(place.offset - a) < std::abs(place.offset - b);
+  };
+  const double center = *std::min_element(road.centers.begin(), road.centers.end(), nearer);
+  if (std::abs(place.offset - center) > road.half_width) return place.share;  // in a lane without a line
+  double share = 0.0;
+  for (const double other : road.centers) {
+    if (std::abs(other - center) > road.half_width || other == center) {
+      share += share_near(other + place.offset - center);
+    }
+  }
+  return share;
+}
+
 }  // namespace relative_map::core

@@ -48,6 +48,11 @@ class WhichLane {
            const Road& road);
   /// Where the vehicle most likely is.
   Place likeliest() const;
+  /// The share of the belief that is near `offset` [m].
+  double share_near(double offset) const;
+  /// The share that has the vehicle at the same place as `place` within its lane, whichever lane with a line
+  /// that is: the paint around the vehicle is the same then, only the lane's name is open.
+  double share_alike(const Place& place, const Road& road) const;
 
  private:
   static constexpr int kCells = 361;
