@@ -8,7 +8,7 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kPoint = 0.02;          // [m] of each point of the paint that the camera has seen
+constexpr double kPoint = 0.05;          // [m] of each point of the paint that the camera has seen
 constexpr double kCurvatureRate = 5e-7;  // [1/m^2] of c3
 constexpr double kStraight = 0.02;       // [m] by which a cubic bends that tells of no curvature
 
