@@ -14,7 +14,7 @@ constexpr double kHoldTime = 1.0;     // [s] without paint until the estimate st
 constexpr double kForgetTime = 60.0;  // [s] without paint until nothing is left worth having
 constexpr double kClear = 0.8;        // [-] of the belief in one lane: it is that one
 constexpr double kUnclear = 0.6;      // [-] ... and no more
-constexpr double kRival = 0.3;  // [-] of the likeliest lane's share, that keeps the lane that is followed
+constexpr double kRival = 0.3;        // [-] of the likeliest lane's share: the lane that is followed is kept
 constexpr double kShift = 0.7;        // [m] at least, by which the lane is another than thought
 constexpr double kAnother = 1.2;  // [m] of paint from the border of the lane that is clear: another border's
 constexpr double kOpeningGate = 2.0;   // standard deviations of the lane's width
@@ -232,8 +232,8 @@ void LaneEstimator::find_lane(std::array<SeenSide, 2>& seen, const NavigationLin
   lane_clear_ = which_.share_alike(place, road_) > (lane_clear_ ? kUnclear : kClear);
   const double gap = place.offset - offset;
   if (!lane_clear_ || std::abs(gap) < kShift || std::abs(gap) > max_offset_) return;
-  // Where only the name is open, the vehicle need not be in another one than so far.
-  if (informed() && place.share < kClear && which_.share_near(offset) > kRival * place.share) return;
+  // A second or two of wrong paint is not enough to leave the lane that is followed.
+  if (informed() && which_.share_near(offset) > kRival * place.share) return;
   filter_->shift(beside.normal, gap, std::hypot(place.stddev, 0.3));
   meter_.lose_bias();
   for (SeenSide& one : seen) measure(one, line, projection);
