@@ -371,6 +371,10 @@ PyramidMatch match_pyramid(const PyramidMap& map, const PointCloud& scan, const 
       }
     }
     found = search_level(map, level, scan, pose, reach, yaws, weighing, least, param, match);
+    if (found.histogram.p.empty()) {  // not one cell of the scan is in reach of the map
+      match.reasons.push_back("the map knows only 0 % of the scan's cells");
+      return match;
+    }
     found.histogram.cell_size = size;
     found.histogram.centre = pose.translation().head<2>();
     if (level == 0 && prior != nullptr && !prior->p.empty()) {

@@ -13,10 +13,10 @@ constexpr double kMostAslant =
 constexpr double kBend = 0.05;  // [m] of the line along the paint
 constexpr double kStraightDoubt = 0.03;  // [-] of the difference between both
 constexpr double kSharp = 0.4;           // [rad]
-constexpr double kMisfit = 8.0;  // [-] standard deviations of what a polynomial can't follow, in what it can
-// [m/sqrt(s)] at least, of localization's bias along the way, where paint shows nothing of it: SLAM that
-// drifts by 1 % of the way makes as much at 10 m/s.
-constexpr double kAlongWalk = 0.3;
+constexpr double kMisfit = 6.0;  // [-] standard deviations of what a polynomial can't follow, in what it can
+// [m/sqrt(s)] at least, of localization's bias along the way, where paint shows nothing of it but odometry
+// does: SLAM that drifts by 1 % of the way makes as much at 10 m/s.
+constexpr double kAlongWalk = 0.25;
 constexpr double kHalfWidthWalk =
     0.01;  // [m] by the root of the way [m]: lanes widen by metres over hundreds of them
 constexpr double kRecordingWalk =
@@ -89,8 +89,9 @@ void LaneFilter::move(const VehicleState& from, const VehicleState& to, double p
   const LocalizationNoise& loc = noise_.localization;
   const double kept = std::exp(-dt / decay_time);
   Eigen::Matrix3d walk = walk.Zero();
-  walk.topLeftCorner<2, 2>() = squared(std::max(position_walk, kAlongWalk)) * ahead * ahead.transpose() +
-                               squared(position_walk) * left * left.transpose();
+  const double along_walk = to.speed_by_poses ? position_walk : std::max(position_walk, kAlongWalk);
+  walk.topLeftCorner<2, 2>() =
+      squared(along_walk) * ahead * ahead.transpose() + squared(position_walk) * left * left.transpose();
   walk(2, 2) = squared(loc.heading_walk);
   filter_.predict_part<kBiasX, 3>(kept * x.segment<3>(kBiasX), kept * Eigen::Matrix3d::Identity(),
                                   Eigen::Matrix3d(dt * walk));

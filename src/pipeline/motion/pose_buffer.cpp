@@ -28,7 +28,8 @@ void PoseBuffer::add(const VehicleState& state) {
   states_.push_back(given);
   VehicleState& newest = states_.back();
   if (!std::isfinite(given.yaw_rate) || !odometry_.trusts_yaw_rate()) newest.yaw_rate = turn_rate();
-  if (!std::isfinite(given.speed) || !odometry_.trusts_speed()) newest.speed = speed_along();
+  newest.speed_by_poses = !std::isfinite(given.speed) || !odometry_.trusts_speed();
+  if (newest.speed_by_poses) newest.speed = speed_along();
   while (states_.front().stamp < state.stamp - kept_) states_.pop_front();
 }
 

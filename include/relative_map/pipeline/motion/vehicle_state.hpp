@@ -16,8 +16,9 @@ namespace relative_map::core {
 struct VehicleState {
   Time stamp{};
   Pose2 map_from_base;
-  double speed = 0.0;     ///< [m/s] negative when reversing; NaN: not given
-  double yaw_rate = 0.0;  ///< [rad/s] NaN: not given
+  double speed = 0.0;           ///< [m/s] negative when reversing; NaN: not given
+  double yaw_rate = 0.0;        ///< [rad/s] NaN: not given
+  bool speed_by_poses = false;  ///< the speed is how the poses have moved: no second witness beside them
   // Standard deviations by what the localization says of itself: a prior at best. NaN: not given.
   double position_stddev = std::numeric_limits<double>::quiet_NaN();  ///< [m] of x and of y
   double heading_stddev = std::numeric_limits<double>::quiet_NaN();   ///< [rad]
