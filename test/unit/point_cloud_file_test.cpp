@@ -94,7 +94,8 @@ TEST_F(PointCloudFileTest, PointsThatAreNoneAreLeftOut) {
   ASSERT_EQ(file.cloud.size(), 2u);
   EXPECT_EQ(file.dropped, 3u);
   EXPECT_EQ(file.cloud.points[1], Eigen::Vector3d(4, 5, 6));
-  const CloudFile text = read_point_cloud(write("b.pcd", header("2", "ascii") + "nan nan nan\n1 2.5 -3e-1\n"));
+  const CloudFile text =
+      read_point_cloud(write("b.pcd", header("2", "ascii") + "nan nan nan\n1 2.5 -3e-1\n"));
   ASSERT_EQ(text.cloud.size(), 1u);
   EXPECT_EQ(text.cloud.points[0], Eigen::Vector3d(1, 2.5, -0.3));
 }
