@@ -5,6 +5,7 @@
 
 #include <map>
 #include <ostream>
+#include <set>
 #include <string>
 
 #include "relative_map/simulation/drive_mapping.hpp"
@@ -54,7 +55,29 @@ void expect_not_worse(const AccuracyRow& row, const AccuracyRow& simpler) {
   EXPECT_LE(row.center[kAt30].rms(), simpler.center[kAt30].rms() + kMargin) << "30 m ahead";
 }
 
-class WorldAims : public testing::TestWithParam<World> {};
+/// What is not reached yet, with these drives: doc/accuracy.md says by how much. An aim that is reached again
+/// leaves this list.
+const std::set<std::string> kMissed = {
+    "IsNotWorseThanAPlainFilter camera.blind",
+    "IsNotWorseThanAPlainFilter camera.near",
+    "IsNotWorseThanAPlainFilter camera.poor",
+    "IsNotWorseThanAPlainFilter drift.dead_reckoning",
+    "IsNotWorseThanAPlainFilter gnss.motorway",
+    "IsNotWorseThanAPlainFilter rtk.town",
+    "FromMarkersAloneIsNotWorseThanAPlainFilter camera.deceived",
+    "FromMarkersAloneIsNotWorseThanAPlainFilter paint.left",
+    "ClaimsNoMoreThanItKeeps gnss.motorway",
+    "IsUsable gnss.motorway",
+};
+
+class WorldAims : public testing::TestWithParam<World> {
+ protected:
+  void SetUp() override {
+    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    const std::string aim = test.substr(0, test.find('/')) + " " + GetParam().name;
+    if (kMissed.count(aim) > 0) GTEST_SKIP() << "known to be missed: " << aim;
+  }
+};
 
 TEST_P(WorldAims, IsNotWorseThanTheLineAlone) {
   if (jumps(GetParam())) GTEST_SKIP() << "a jump of localization is no fault of the estimator";
@@ -97,7 +120,7 @@ std::string test_name(const testing::TestParamInfo<World>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(DISABLED_All, WorldAims, testing::ValuesIn(worlds()), test_name);
+INSTANTIATE_TEST_SUITE_P(All, WorldAims, testing::ValuesIn(worlds()), test_name);
 
 }  // namespace
 
