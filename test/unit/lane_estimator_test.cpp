@@ -62,6 +62,16 @@ TEST(LaneEstimator, OneSideIsEnough) {
   EXPECT_NEAR(drive.error(map, 10.0), 0.0, 0.05);
 }
 
+TEST(LaneEstimator, WithOneLineTheLaneIsFoundHoweverFarOffLocalizationPutsIt) {
+  for (const double bias : {-5.0, -3.5, -3.1, -2.5, -1.9, -1.4, 1.4, 1.9, 2.5, 3.1, 3.5, 5.0}) {
+    StraightDrive drive;
+    drive.bias = {0.0, bias};
+    const RelativeMap map = drive.drive(20);  // two seconds
+    EXPECT_EQ(map.fusion.source, Source::kFused) << bias;
+    EXPECT_NEAR(drive.error(map, 10.0), 0.0, 0.1) << bias;
+  }
+}
+
 TEST(LaneEstimator, AJumpOfLocalizationDoesNotMoveTheLane) {
   StraightDrive drive;
   drive.drive(20);

@@ -276,7 +276,7 @@ std::array<LaneEstimator::SeenSide, 2> LaneEstimator::assign(const SeenSides& si
   // lane's left border may be on the right of the camera already, and the other way round.
   constexpr double kNearEdge = 0.5, kSameBorder = 0.6;  // [m]
   const double half_width = filter_->half_width().value;
-  const double to_left = half_width - projection.l, to_right = half_width + projection.l;
+  const double to_left = std::abs(half_width - projection.l), to_right = std::abs(half_width + projection.l);
   if (std::min(to_left, to_right) < kNearEdge) {
     const bool at_left = to_left < to_right;
     SeenSide &border = seen[at_left ? 0 : 1], &beyond = seen[at_left ? 1 : 0];
