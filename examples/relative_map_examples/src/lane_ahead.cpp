@@ -1,4 +1,5 @@
-// Prints, for each map, where the middle of the vehicle's lane is 20 m ahead: a start for a planner of your own.
+// Prints, for each map, where the middle of the vehicle's lane is 20 m ahead: a start for a planner of your
+// own.
 #include <relative_map/MapMsg.h>
 #include <ros/ros.h>
 

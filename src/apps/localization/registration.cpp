@@ -2,9 +2,9 @@
 
 #include <time.h>
 
-#include <algorithm>
 #include <iostream>
 
+#include "relative_map/geometry/statistics.hpp"
 #include "relative_map/io/point_cloud_file.hpp"
 #include "relative_map/localization/clouds/cloud_filters.hpp"
 #include "relative_map/localization/ndt/ndt_belief.hpp"
@@ -24,8 +24,7 @@ double median_ms(int repeat, const Call& call) {
     call();
     times.push_back(cpu_ms() - begin);
   }
-  std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
-  return times[times.size() / 2];
+  return core::median(std::move(times));
 }
 
 Registration register_by_ndt(const core::PointCloud& target, const core::PointCloud& source,

@@ -53,17 +53,5 @@ int run(const std::vector<std::string>& words) {
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
-    std::cout << relative_map::kUsage;
-    return 0;
-  }
-  try {
-    return relative_map::run(words);
-  } catch (const relative_map::UsageError& fault) {
-    std::cerr << "check_prediction: " << fault.what() << "\n\n" << relative_map::kUsage;
-  } catch (const std::exception& fault) {
-    std::cerr << "check_prediction: " << fault.what() << "\n";
-  }
-  return 2;
+  return relative_map::run_tool("check_prediction", relative_map::kUsage, argc, argv, relative_map::run, 2);
 }

@@ -104,7 +104,7 @@ class BagRun {
   std::set<std::string> mistyped_;
 };
 
-void run(const std::vector<std::string>& words) {
+int run(const std::vector<std::string>& words) {
   const CommandLine line(words, {"--config"});
   const std::vector<std::string>& files = line.files(2, 2, "IN.bag and OUT.bag");
   std::error_code not_there;
@@ -125,25 +125,12 @@ void run(const std::vector<std::string>& words) {
     throw std::runtime_error(files[0] + ": can't be predicted: " + fault.what());
   }
   bag_run.print_summary();
+  return 0;
 }
 
 }  // namespace
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
-    std::cout << relative_map::kUsage;
-    return 0;
-  }
-  try {
-    relative_map::run(words);
-  } catch (const relative_map::UsageError& fault) {
-    std::cerr << "predict: " << fault.what() << "\n\n" << relative_map::kUsage;
-    return 2;
-  } catch (const std::exception& fault) {
-    std::cerr << "predict: " << fault.what() << "\n";
-    return 1;
-  }
-  return 0;
+  return relative_map::run_tool("predict", relative_map::kUsage, argc, argv, relative_map::run);
 }

@@ -183,7 +183,8 @@ class SceneRun {
   double last_start_ = -1.0;
 };
 
-void run(const Arguments& arguments) {
+int run(const std::vector<std::string>& words) {
+  const Arguments arguments = parse(words);
   const core::PredictionConfig config = arguments.config.empty()
                                             ? core::PredictionConfig()
                                             : make_prediction_config(read_yaml(arguments.config)).prediction;
@@ -191,25 +192,12 @@ void run(const Arguments& arguments) {
   WholeFile output(arguments.output);
   SceneRun(arguments, scene, config).run(output.stream());
   output.close();
+  return 0;
 }
 
 }  // namespace
 }  // namespace relative_map
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 1 && (words[0] == "--help" || words[0] == "-h")) {
-    std::cout << relative_map::kUsage;
-    return 0;
-  }
-  try {
-    relative_map::run(relative_map::parse(words));
-  } catch (const relative_map::UsageError& fault) {
-    std::cerr << "predict_scene: " << fault.what() << "\n\n" << relative_map::kUsage;
-    return 2;
-  } catch (const std::exception& fault) {
-    std::cerr << "predict_scene: " << fault.what() << "\n";
-    return 1;
-  }
-  return 0;
+  return relative_map::run_tool("predict_scene", relative_map::kUsage, argc, argv, relative_map::run);
 }

@@ -28,9 +28,6 @@ constexpr double kScaleStep = 0.03;    // [-] of the camera's variance, from ima
 constexpr double kLeastScale = 0.5, kMostScale = 30.0;
 constexpr double kSwayWay = 150.0;                    // [m] over which the sway is measured
 constexpr double kLeastSway = 0.05, kMostSway = 0.5;  // [m]
-constexpr double kShapeReach = 30.0;  // [m] ahead, where a change of the line's direction is looked for
-// [rad] of the line's direction at the vehicle and there: paint can't have stayed the same beside it.
-const Eigen::Vector2d kShapeChange(0.03, 0.05);
 
 Point2 normal_of(double heading) {
   return {-std::sin(heading), std::cos(heading)};
@@ -138,7 +135,7 @@ void LaneEstimator::follow_line(const NavigationLine& line, const LineProjection
 std::vector<std::string> LaneEstimator::see(const SeenSides& sides, const NavigationLine& line,
                                             const LineProjection& projection, Time stamp) {
   if (!last_ || !filter_) return {};
-  if (is_frozen(sides, line, projection)) {
+  if (frozen_.look(sides.unchanged, last_->map_from_base, line, projection.nearest_vertex)) {
     const std::string why = "they are frozen: the numbers stay the same while the line beside them moves";
     if (informed()) {  // they have led it astray
       start(*last_);
@@ -301,23 +298,6 @@ void LaneEstimator::see_beyond(const std::optional<PaintSamples>& paint, Side si
   const double own = filter_->half_width().value, distance = own + sign_of(side) * measurement->near_offset();
   beyond_.see(side == Side::kLeft ? beyond_.left : beyond_.right, stamp, distance,
               measurement->covariance(0, 0), own, paint->to, paint->type);
-}
-
-/// Whether paint says the same numbers as before, while the line has moved beside the vehicle.
-bool LaneEstimator::is_frozen(const SeenSides& sides, const NavigationLine& line,
-                              const LineProjection& projection) {
-  // By headings, since localization's position drifts and jumps.
-  const Pose2& pose = last_->map_from_base;
-  const Point2 position = pose.position() - line.origin;
-  LineWalker walker(line, projection.nearest_vertex);
-  Eigen::Vector2d shape;
-  for (int i = 0; i < 2; ++i) {
-    const Point2 normal = walker.beside(position + i * kShapeReach * pose.forward()).normal;
-    shape[i] = std::atan2(-pose.forward().dot(normal), -cross(pose.forward(), normal));
-  }
-  if (!sides.unchanged || line.id != frozen_.line_id) frozen_ = {false, line.id, shape};
-  if (((shape - frozen_.line_shape).cwiseAbs().array() > kShapeChange.array()).any()) frozen_.frozen = true;
-  return frozen_.frozen;
 }
 
 /// How far recordings sway: by the knots that have just been seen best.

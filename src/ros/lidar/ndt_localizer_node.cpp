@@ -1,6 +1,5 @@
 #include "relative_map/ros/lidar/ndt_localizer_node.hpp"
 
-#include <XmlRpcValue.h>
 #include <relative_map/LidarMatch.h>
 
 #include <algorithm>
@@ -13,12 +12,6 @@
 namespace relative_map {
 
 namespace {
-
-NdtNodeConfig load_config(const ros::NodeHandle& private_nh) {
-  XmlRpc::XmlRpcValue tree;
-  private_nh.getParam(private_nh.getNamespace(), tree);
-  return make_ndt_config(flatten(tree));
-}
 
 /// None where the numbers are no pose.
 std::optional<Eigen::Isometry3d> pose_of(const geometry_msgs::Pose& pose) {
@@ -62,7 +55,7 @@ Eigen::Vector3d vector_of(const geometry_msgs::Vector3& v) {
 NdtLocalizerNode::NdtLocalizerNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(nh),
       private_nh_(private_nh),
-      config_(load_config(private_nh)),
+      config_(make_ndt_config(parameters_of(private_nh))),
       transform_listener_(transforms_),
       link_transforms_(link_transforms(transforms_)),
       engine_(config_),

@@ -1,6 +1,5 @@
 #include "relative_map/ros/localizer/localizer_node.hpp"
 
-#include <XmlRpcValue.h>
 #include <topic_tools/shape_shifter.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -19,12 +18,6 @@ constexpr double kDrawPeriod = 0.2;     // [s] between markers
 constexpr std::size_t kPathLength = 1500;
 constexpr double kRemarkTime = 5.0;  // [s] that a remark stays in the diagnostics
 
-LocalizerNodeConfig load_config(const ros::NodeHandle& private_nh) {
-  XmlRpc::XmlRpcValue tree;
-  private_nh.getParam(private_nh.getNamespace(), tree);
-  return make_localizer_config(flatten(tree));
-}
-
 std_msgs::ColorRGBA colour_of(core::EstimateCode code) {
   std_msgs::ColorRGBA colour;
   colour.a = 1.0F;
@@ -39,7 +32,7 @@ std_msgs::ColorRGBA colour_of(core::EstimateCode code) {
 LocalizerNode::LocalizerNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(nh),
       private_nh_(private_nh),
-      config_(load_config(private_nh)),
+      config_(make_localizer_config(parameters_of(private_nh))),
       transform_listener_(transforms_),
       engine_(config_, link_transforms(transforms_), kWaitForFrames),
       diagnostics_(nh, private_nh, private_nh.getNamespace()) {

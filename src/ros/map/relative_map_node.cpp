@@ -18,13 +18,11 @@ std::vector<std::string> configured_files(const ros::NodeHandle& private_nh) {
 }
 
 NodeConfig load_config(const ros::NodeHandle& private_nh) {
-  XmlRpc::XmlRpcValue tree;
-  private_nh.getParam(private_nh.getNamespace(), tree);
   // Like other users of it: in the node's namespace, or else in one around it.
   // From the private one, since a nodelet's public handle can't search from the root.
   std::string key, urdf;
   if (private_nh.searchParam("robot_description", key)) private_nh.getParam(key, urdf);
-  return make_node_config(flatten(tree), urdf);
+  return make_node_config(parameters_of(private_nh), urdf);
 }
 
 const ros::WallDuration kTypesPeriod(2.0);

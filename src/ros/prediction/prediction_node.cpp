@@ -1,6 +1,5 @@
 #include "relative_map/ros/prediction/prediction_node.hpp"
 
-#include <XmlRpcValue.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include "relative_map/ros/prediction/prediction_markers.hpp"
@@ -11,18 +10,12 @@ namespace {
 
 constexpr double kSilent = 1.0;  // [s] without a prediction: something stands still
 
-PredictionNodeConfig load_config(const ros::NodeHandle& private_nh) {
-  XmlRpc::XmlRpcValue tree;
-  private_nh.getParam(private_nh.getNamespace(), tree);
-  return make_prediction_config(flatten(tree));
-}
-
 }  // namespace
 
 PredictionNode::PredictionNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(nh),
       private_nh_(private_nh),
-      config_(load_config(private_nh)),
+      config_(make_prediction_config(parameters_of(private_nh))),
       transform_listener_(transforms_),
       engine_(config_, link_transforms(transforms_)),
       diagnostics_(nh, private_nh, private_nh.getNamespace()) {

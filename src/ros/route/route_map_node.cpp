@@ -1,6 +1,5 @@
 #include "relative_map/ros/route/route_map_node.hpp"
 
-#include <XmlRpcValue.h>
 #include <nav_msgs/Path.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -11,20 +10,10 @@
 
 namespace relative_map {
 
-namespace {
-
-RouteNodeConfig load_config(const ros::NodeHandle& private_nh) {
-  XmlRpc::XmlRpcValue tree;
-  private_nh.getParam(private_nh.getNamespace(), tree);
-  return make_route_config(flatten(tree));
-}
-
-}  // namespace
-
 RouteMapNode::RouteMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : nh_(nh),
       private_nh_(private_nh),
-      config_(load_config(private_nh)),
+      config_(make_route_config(parameters_of(private_nh))),
       transform_listener_(transforms_),
       engine_(config_, link_transforms(transforms_)),
       diagnostics_(nh, private_nh, private_nh.getNamespace()) {

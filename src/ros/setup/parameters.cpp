@@ -1,6 +1,7 @@
 #include "relative_map/ros/setup/parameters.hpp"
 
 #include <XmlRpcValue.h>
+#include <ros/node_handle.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
@@ -216,6 +217,12 @@ ParameterSet flatten(const XmlRpc::XmlRpcValue& tree) {
   ParameterSet set;
   if (tree.valid()) flatten_into(set, "", tree);
   return set;
+}
+
+ParameterSet parameters_of(const ros::NodeHandle& private_nh) {
+  XmlRpc::XmlRpcValue tree;
+  private_nh.getParam(private_nh.getNamespace(), tree);
+  return flatten(tree);
 }
 
 ParameterSet read_yaml(const std::string& file) {

@@ -14,6 +14,7 @@
 #include "relative_map/pipeline/estimation/which_lane.hpp"
 #include "relative_map/pipeline/lanes/lane_path.hpp"
 #include "relative_map/pipeline/lines/navigation_line_tracker.hpp"
+#include "relative_map/pipeline/paint/frozen_paint.hpp"
 
 namespace relative_map::core {
 
@@ -77,14 +78,6 @@ class LaneEstimator {
     std::optional<PaintSamples> paint;
     std::optional<LaneFilter::Measurement> measurement;
   };
-  /// What paint must not be believed for: it has not changed, though the line has.
-  struct Frozen {
-    bool frozen = false;
-    std::string line_id;
-    Eigen::Vector2d line_shape =
-        Eigen::Vector2d::Zero();  ///< [rad] that line's directions when paint last changed
-  };
-
   void forget_place();
   void start(const VehicleState& localized);
   void find_lane(std::array<SeenSide, 2>& seen, const NavigationLine& line, const LineProjection& projection,
@@ -96,7 +89,6 @@ class LaneEstimator {
                                  const LineProjection& projection) const;
   void see_beyond(const std::optional<PaintSamples>& paint, Side side, const NavigationLine& line,
                   std::size_t vertex, Time stamp);
-  bool is_frozen(const SeenSides& sides, const NavigationLine& line, const LineProjection& projection);
   void learn_sway(double way);
 
   SensorNoise noise_;
@@ -117,7 +109,7 @@ class LaneEstimator {
   bool lane_clear_ = false;           ///< which lane the vehicle is in
   double agreed_ = 0.0;               ///< [s] of paint that has agreed on it
   std::optional<Time> last_paint_, last_image_;
-  Frozen frozen_;
+  FrozenPaint frozen_;
   NeighbourBorders beyond_;
   double paint_range_ = 0.0;
   std::string given_up_;

@@ -12,6 +12,9 @@
 namespace XmlRpc {
 class XmlRpcValue;
 }
+namespace ros {
+class NodeHandle;
+}
 
 namespace relative_map {
 
@@ -42,6 +45,8 @@ struct NodeConfig {
 /// their folder, and what other libraries keep in a node's namespace (e.g. robot_description) are left out.
 /// What is no scalar is kept as its text, for `make_node_config` to name.
 ParameterSet flatten(const XmlRpc::XmlRpcValue& tree);
+/// Those of a node, from its private handle.
+ParameterSet parameters_of(const ros::NodeHandle& private_nh);
 /// Reads a YAML file; throws std::runtime_error naming file and fault.
 ParameterSet read_yaml(const std::string& file);
 
