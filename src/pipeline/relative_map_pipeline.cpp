@@ -5,12 +5,15 @@
 
 #include "relative_map/model/remarks.hpp"
 #include "relative_map/pipeline/lanes/lane_width.hpp"
+#include "relative_map/pipeline/lanes/map_builder.hpp"
+#include "relative_map/pipeline/lanes/narrow_lanes.hpp"
 
 namespace relative_map::core {
 
 namespace {
 
 constexpr std::size_t kMostNoted = 20;  // remarks between two ticks
+constexpr double kBeforeFold = 5.0;     // [m] that a lane ends before a place without borders
 
 /// [m] of a side at the first sample that is beside or ahead of the vehicle.
 double width_beside(const std::vector<WidthSample>& samples, double s_at_vehicle) {
@@ -54,9 +57,14 @@ void RelativeMapPipeline::reset() {
   forget_what_was_seen();
 }
 
-void RelativeMapPipeline::clock_went_back() {
-  reset();
-  last_stamp_ = Time();
+bool RelativeMapPipeline::set_clock(Time now) {
+  const bool went_back = last_tick_ && goes_back(*last_tick_, now);
+  if (went_back) {
+    reset();
+    last_stamp_ = Time();
+  }
+  last_tick_ = now;
+  return went_back;
 }
 
 void RelativeMapPipeline::forget_what_was_seen() {
@@ -75,8 +83,7 @@ void RelativeMapPipeline::note(const std::vector<std::string>& remarks) {
 }
 
 RelativeMap RelativeMapPipeline::tick(Time now) {
-  if (last_tick_ && goes_back(*last_tick_, now)) clock_went_back();
-  last_tick_ = now;
+  set_clock(now);
   remarks_ = std::exchange(noted_, {});
   std::variant<RelativeMap, Status> built = build(now);
   if (auto* status = std::get_if<Status>(&built)) {
@@ -125,11 +132,33 @@ MapMethod& RelativeMapPipeline::method() {
   return fixed_weight_;
 }
 
-RelativeMap RelativeMapPipeline::map_of(FoundLanes found) {
+/// Without a lane that winds or folds so tightly that it can't have borders; false: then the vehicle's own
+/// lane would be too short.
+bool RelativeMapPipeline::leave_out(const BadLane& bad, FoundLanes& found) {
+  LanePath& lane = found.lanes[bad.lane];
+  const bool cut = cut_short(lane, bad.s - kBeforeFold);
+  if (!cut && bad.lane == found.current) return false;
+  add_new(remarks_, {"line '" + lane.id + (cut ? "' is cut short: " : "' is left out: ") + bad.what});
+  if (cut) return true;
+  found.lanes.erase(found.lanes.begin() + static_cast<std::ptrdiff_t>(bad.lane));
+  if (bad.lane < found.current) --found.current;
+  return true;
+}
+
+std::variant<RelativeMap, Status> RelativeMapPipeline::map_of(FoundLanes found) {
   const double s_at_vehicle = found.lanes[found.current].s_at_vehicle;
-  LaneBorders borders = find_borders(found.lanes, config_->navigation_lane.max_lane_half_width);
-  RelativeMap map =
-      build_map(std::move(found.lanes), std::move(borders), found.current, found.paint, *config_);
+  const MapContext context = MapContext::of(*config_);
+  const auto build_lanes = [&] {
+    LaneBorders borders = find_borders(found.lanes, config_->navigation_lane.max_lane_half_width);
+    return build_map(found.lanes, std::move(borders), found.current, found.paint, *config_);
+  };
+  RelativeMap map = build_lanes();
+  while (const std::optional<BadLane> bad = find_bad_lane(map, context)) {
+    take_back(std::move(map), found.lanes);
+    if (!leave_out(*bad, found))
+      return Status{StatusCode::kLineEnd, "no lane has such borders: " + bad->what};
+    map = build_lanes();
+  }
   map.stamp = found.vehicle.stamp;
   map.fusion = std::move(found.fusion);
   const Lane& lane = map.lanes[found.current];

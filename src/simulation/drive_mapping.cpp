@@ -25,7 +25,7 @@ class PipelineMapMaker : public MapMaker {
   PipelineMapMaker(const NavigationInfo& navigation, const PipelineConfig& config, bool deliver_markers)
       : pipeline_(std::make_shared<PipelineConfig>(config)),
         deliver_markers_(deliver_markers),
-        context_{config.base_frame, std::nullopt} {
+        context_(MapContext::of(config)) {
     pipeline_.set_navigation_lines(prepare_navigation_lines(navigation, IntakeParam::of(config)));
   }
 
@@ -57,6 +57,7 @@ class PipelineMapMaker : public MapMaker {
       sentences.push_back(violation.row + ": " + violation.what);
     }
     context_.previous_sequence_num = map.sequence_num;
+    context_.previous_stamp = map.stamp;
     return sentences;
   }
 

@@ -36,11 +36,12 @@ TEST(Contract, HoldsForEveryMapOfThousandsOfRandomDrives) {
   std::map<Source, int> sources;
   std::size_t most_lanes = 0;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
-    std::optional<std::uint32_t> previous;
+    MapContext context;
     drive(seed, SceneParam(), 10, [&](const RelativeMap& map, int step) {
-      const std::vector<Violation> violations = check_map(map, {"base_link", previous});
+      const std::vector<Violation> violations = check_map(map, context);
       EXPECT_TRUE(violations.empty()) << "seed " << seed << ", step " << step << "\n" << rows_of(violations);
-      previous = map.sequence_num;
+      context.previous_sequence_num = map.sequence_num;
+      context.previous_stamp = map.stamp;
       ++statuses[map.status.code];
       ++sources[map.fusion.source];
       most_lanes = std::max(most_lanes, map.lanes.size());

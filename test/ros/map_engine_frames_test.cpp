@@ -154,6 +154,7 @@ TEST(MapEngineOrientation, OfAnRfuLocalizationIsTurned) {
   const MapMsg map = engine.map_at(kStamp);
   ASSERT_EQ(map.navigation_path.size(), 3u) << map.status.message;
   EXPECT_NEAR(map.navigation_path[1].navigation_path.path.path_point[0].theta, 0.0, 1e-9);
+  EXPECT_NEAR(map.localization.pose.heading, 0.6, 1e-9) << "which was not given";
 }
 
 }  // namespace

@@ -29,7 +29,9 @@ inline Localization localization_at(const Pose2& pose, Time stamp, double speed 
 class Scene {
  public:
   explicit Scene(std::vector<RecordedLine> lines, const PipelineConfig& config = PipelineConfig())
-      : config_(config), pipeline_(std::make_shared<PipelineConfig>(config)) {
+      : config_(config),
+        context_(MapContext::of(config)),
+        pipeline_(std::make_shared<PipelineConfig>(config)) {
     set_lines(std::move(lines));
   }
 
@@ -57,16 +59,20 @@ class Scene {
   }
   RelativeMap tick() {
     RelativeMap map = pipeline_.tick(now_);
-    for (const Violation& violation : check_map(map, {config_.base_frame, sequence_num_})) {
+    for (const Violation& violation : check_map(map, context_)) {
       ADD_FAILURE() << violation.row << ": " << violation.what;
     }
-    sequence_num_ = map.sequence_num;
+    context_.previous_sequence_num = map.sequence_num;
+    context_.previous_stamp = map.stamp;
     return map;
   }
 
   RelativeMapPipeline& pipeline() { return pipeline_; }
   Time now() const { return now_; }
-  void wait(double seconds) { now_ += from_seconds(seconds); }
+  void wait(double seconds) {
+    now_ += from_seconds(seconds);
+    if (seconds < 0.0) context_.previous_stamp.reset();  // the clock is set back
+  }
   bool remarked(const std::string& words) const {
     const auto& remarks = pipeline_.remarks();
     return std::any_of(remarks.begin(), remarks.end(),
@@ -77,9 +83,9 @@ class Scene {
 
  private:
   PipelineConfig config_;
+  MapContext context_;
   RelativeMapPipeline pipeline_;
   Time now_ = at_seconds(1000.0);
-  std::optional<std::uint32_t> sequence_num_;
 };
 
 inline std::vector<std::string> lane_ids(const RelativeMap& map) {

@@ -16,7 +16,9 @@ NavigationLine prepare(const Polyline& points, bool stitch_closed_lines = true) 
   param.stitch_closed_lines = stitch_closed_lines;
   const auto prepared = prepare_navigation_lines({"map", {recording(points)}}, param);
   EXPECT_EQ(prepared->lines.size(), 1u);
-  EXPECT_TRUE(prepared->faults.empty());
+  for (const std::string& fault : prepared->faults) {  // some of these turns are sharper than any lane's
+    EXPECT_NE(fault.find("turns back"), std::string::npos) << fault;
+  }
   return prepared->lines.at(0);
 }
 

@@ -14,10 +14,10 @@ using test::concentric_lane;
 using test::distance_by_brute_force;
 using test::straight_lane;
 
-RelativeMap map_of(const std::vector<LanePath>& lanes, std::size_t current = 0,
-                   const SeenPaint& paint = SeenPaint(), const PipelineConfig& config = PipelineConfig()) {
-  return build_map(lanes, find_borders(lanes, config.navigation_lane.max_lane_half_width), current, paint,
-                   config);
+RelativeMap map_of(std::vector<LanePath> lanes, std::size_t current = 0, const SeenPaint& paint = SeenPaint(),
+                   const PipelineConfig& config = PipelineConfig()) {
+  LaneBorders borders = find_borders(lanes, config.navigation_lane.max_lane_half_width);
+  return build_map(lanes, std::move(borders), current, paint, config);
 }
 
 std::vector<LanePath> three_lanes() {

@@ -104,6 +104,18 @@ const Breakage kBreakages[] = {
      [](RelativeMap& map) {
        for (PathPoint& point : map.lanes[1].path) point.kappa = -0.01;
      }},
+    {"curvature_rate", "another rate",
+     [](RelativeMap& map) {
+       for (PathPoint& point : map.lanes[1].path) point.dkappa = 0.02;
+     }},
+    {"sides", "left and right swapped, samples too",
+     [](RelativeMap& map) {
+       std::swap(map.lanes[0].left_boundary, map.lanes[0].right_boundary);
+       std::swap(map.lanes[0].left_samples, map.lanes[0].right_samples);
+       map.lanes[0].right_neighbor_id.clear();
+       map.lanes[1].left_neighbor_id.clear();
+       map.roads[0].left_edge = map.lanes[0].left_boundary.points;
+     }},
     {"samples", "a width that is not the distance",
      [](RelativeMap& map) { map.lanes[1].left_samples[5].width = 2.0; }},
     {"samples", "none at all", [](RelativeMap& map) { map.lanes[1].right_samples.clear(); }},
@@ -147,6 +159,26 @@ TEST(MapCheck, EveryRowHasATestThatBreaksIt) {
       return row == breakage.row;
     })) << row;
   }
+}
+
+TEST(BadLane, IsNamedWithItsPlace) {
+  RelativeMap map = good_map();
+  const MapContext context;
+  EXPECT_FALSE(find_bad_lane(map, context));
+  std::swap(map.lanes[1].left_boundary, map.lanes[1].right_boundary);
+  std::swap(map.lanes[1].left_samples, map.lanes[1].right_samples);
+  const auto swapped = find_bad_lane(map, context);
+  ASSERT_TRUE(swapped);
+  EXPECT_EQ(swapped->lane, 1u);
+  EXPECT_EQ(swapped->s, 0.0);
+  EXPECT_NE(swapped->what.find(map.lanes[1].id), std::string::npos) << swapped->what;
+
+  map = good_map();
+  map.lanes[2].right_samples[20].width += 0.3;
+  const auto wrong_width = find_bad_lane(map, context);
+  ASSERT_TRUE(wrong_width);
+  EXPECT_EQ(wrong_width->lane, 2u);
+  EXPECT_EQ(wrong_width->s, map.lanes[2].right_samples[20].s);
 }
 
 TEST(Checked, LeavesAGoodMapAsItIs) {

@@ -8,6 +8,7 @@
 
 #include "relative_map/model/config.hpp"
 #include "relative_map/model/map.hpp"
+#include "relative_map/pipeline/contract/map_check.hpp"
 #include "relative_map/pipeline/estimation/estimator_method.hpp"
 #include "relative_map/pipeline/fixed_weight/fixed_weight_method.hpp"
 #include "relative_map/pipeline/lanes/map_method.hpp"
@@ -38,8 +39,9 @@ class RelativeMapPipeline {
   void set_lane_markers(const LaneMarkers& markers, std::optional<Time> received = std::nullopt);
   /// Forgets all but configuration and lines.
   void reset();
-  /// Likewise, and the next map's stamp may be older than the last one's.
-  void clock_went_back();
+  /// Tells the time. True: it has gone back; then all is forgotten likewise, and the next map's stamp may be
+  /// older than the last one's. `tick` does this too.
+  bool set_clock(Time now);
 
   /// The stamp of the pose that the next map would be for; none: no pose yet.
   std::optional<Time> pose_stamp() const { return motion_.stamp(); }
@@ -60,7 +62,8 @@ class RelativeMapPipeline {
 
   std::variant<RelativeMap, Status> build(Time now);
   MapMethod& method();
-  RelativeMap map_of(FoundLanes found);
+  std::variant<RelativeMap, Status> map_of(FoundLanes found);
+  bool leave_out(const BadLane& bad, FoundLanes& found);
   void forget_what_was_seen();
   void note(const std::vector<std::string>& remarks);
 

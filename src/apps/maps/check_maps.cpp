@@ -54,6 +54,7 @@ class Table {
     ++maps_;
     if (map.hdmap.lane.empty()) ++empty_;
     lost_ += note_lost(map, context);
+    note_clock(map, context);
     for (const core::Violation& violation : check_message(map, context)) {
       Finding& finding = findings_[violation.row];
       if (++finding.count > 1) continue;
@@ -61,6 +62,7 @@ class Table {
       finding.example = violation.what;
     }
     context.previous_sequence_num = map.sequence_num;
+    context.previous_stamp = to_core(map.header.stamp);
   }
 
   void print() {

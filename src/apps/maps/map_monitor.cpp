@@ -56,6 +56,7 @@ class MapMonitor {
     ++maps_;
     if (last_.lanes.empty()) ++empty_;
     lost_ += note_lost(message, context_);
+    note_clock(message, context_);
     for (const core::Violation& violation : check_message(message, context_)) {
       ++violations_;
       if (++violations_by_row_[violation.row] <= 3) {
@@ -63,6 +64,7 @@ class MapMonitor {
       }
     }
     context_.previous_sequence_num = last_.sequence_num;
+    context_.previous_stamp = last_.stamp;
   }
 
   void print_line() {

@@ -14,6 +14,9 @@ Fault check_header(const RelativeMap& map, const MapContext& context) {
   if (map.frame_id != context.frame_id)
     return fault("frame_id is '", map.frame_id, "', not '", context.frame_id, "'");
   if (map.stamp <= Time()) return fault("the stamp is not set");
+  if (context.previous_stamp && map.stamp < *context.previous_stamp) {
+    return fault("the stamp goes back by ", to_seconds(*context.previous_stamp - map.stamp), " s");
+  }
   if (context.previous_sequence_num && map.sequence_num != *context.previous_sequence_num + 1) {
     return fault("sequence_num is ", map.sequence_num, " after ", *context.previous_sequence_num);
   }
@@ -151,17 +154,29 @@ constexpr Row kPlainRows[] = {
 };
 /// Rows that need finite numbers and paths of two or more points.
 constexpr Row kGeometryRows[] = {
-    {"arc_length", check_arc_length}, {"heading", check_heading},     {"curvature", check_curvature},
-    {"samples", check_samples},       {"neighbors", check_neighbors}, {"road", check_road},
+    {"arc_length", check_arc_length},         {"heading", check_heading},     {"curvature", check_curvature},
+    {"curvature_rate", check_curvature_rate}, {"neighbors", check_neighbors}, {"road", check_road},
     {"attributes", check_attributes},
 };
 
+constexpr double kWidestLane = 6.0;  // [m] half of it, as paint may show it
+
 }  // namespace
+
+MapContext MapContext::of(const PipelineConfig& config) {
+  MapContext context;
+  context.frame_id = config.base_frame;
+  context.max_half_width = std::max(
+      {kWidestLane, config.map_param.default_left_width, config.map_param.default_right_width,
+       2.0 * config.navigation_lane.max_lane_half_width});  // of two neighbours one may have nearly all
+  return context;
+}
 
 std::vector<std::string> map_check_rows() {
   std::vector<std::string> names;
   for (const Row& row : kPlainRows) names.emplace_back(row.name);
   for (const Row& row : kGeometryRows) names.emplace_back(row.name);
+  names.insert(names.end(), {"samples", "sides"});
   return names;
 }
 
@@ -173,7 +188,12 @@ std::vector<Violation> check_map(const RelativeMap& map, const MapContext& conte
     }
   };
   run(kPlainRows);
-  if (violations.empty()) run(kGeometryRows);
+  if (!violations.empty()) return violations;
+  run(kGeometryRows);
+  if (context.borders_are_checked) return violations;
+  const BorderFaults borders = check_borders(map, context);
+  if (borders.samples) violations.push_back({"samples", *borders.samples});
+  if (borders.sides) violations.push_back({"sides", *borders.sides});
   return violations;
 }
 

@@ -7,15 +7,10 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kWidthTolerance = 0.01;    // [m]
 constexpr double kHeadingTolerance = 0.01;  // [rad]
 constexpr double kTurnWindow = 5.0;         // [m] over which curvature must add up to the turn
-
-std::size_t index_of(const RelativeMap& map, const std::string& id) {
-  std::size_t i = 0;
-  while (i < map.lanes.size() && map.lanes[i].id != id) ++i;
-  return i;
-}
+constexpr double kRateTolerance = 2e-3;     // [1/m^2] of dkappa, as much as a line's own may be off
+constexpr double kRateShare = 0.15;         // likewise, of the changes of kappa
 
 /// The first terms of a series tell angles up to this one within 1e-7 rad, and spare the time of
 /// trigonometry.
@@ -48,42 +43,6 @@ Point2 chord_direction(const PathPoints& path, std::size_t i) {
   const Point2 chord = path[first + 1].position - path[first].position;
   const double to_chord = tangent_to_chord(path[i].kappa, chord.norm());
   return Pose2(Point2::Zero(), i == 0 ? -to_chord : to_chord).rotate_to_parent(chord);
-}
-
-Fault check_side(const Lane& lane, const LaneBoundary& boundary, const std::vector<WidthSample>& samples) {
-  if (samples.empty()) return fault("there are no samples");
-  if (samples.front().s != 0.0) return fault("samples start at ", samples.front().s, " m");
-  if (std::abs(samples.back().s - lane.length) > kLengthTolerance) {
-    return fault("samples end at ", samples.back().s, " m of ", lane.length, " m");
-  }
-  PolylineWalker walker(boundary.points);
-  std::size_t hint = 0, last = 0;
-  double previous = -1.0;
-  for (const WidthSample& sample : samples) {
-    if (sample.s <= previous) return fault("samples step back at ", sample.s, " m");
-    if (!(sample.width > 0.0)) return fault("width is ", sample.width, " m at ", sample.s, " m");
-    while (hint + 1 < lane.path.size() && lane.path[hint + 1].s <= sample.s) ++hint;
-    const bool at_vertex = lane.path[hint].s == sample.s;
-    const Point2 position =
-        at_vertex ? lane.path[hint].position : interpolate(lane.path, sample.s, hint).position;
-    const std::size_t steps = std::max<std::size_t>(1, hint - last);
-    last = hint;
-    const double distance = std::sqrt(walker.next(position, steps).squared_distance);
-    if (std::abs(distance - sample.width) > kWidthTolerance) {
-      return fault("width is ", sample.width, " m at ", sample.s, " m, but the boundary is ", distance,
-                   " m away");
-    }
-    previous = sample.s;
-  }
-  return std::nullopt;
-}
-
-/// Two borders of neighbours are one where both exist.
-Fault check_shared_boundary(const Lane& left, const Lane& right) {
-  const Gap gap = widest_gap(left.right_boundary.points, right.left_boundary.points);
-  if (gap.width <= kWidthTolerance) return std::nullopt;
-  return fault("lanes '", left.id, "' and '", right.id, "' have boundaries ", gap.width,
-               " m apart at x = ", gap.place.x());
 }
 
 }  // namespace
@@ -149,34 +108,24 @@ Fault check_curvature(const RelativeMap& map, const MapContext&) {
   });
 }
 
-Fault check_samples(const RelativeMap& map, const MapContext&) {
+Fault check_curvature_rate(const RelativeMap& map, const MapContext&) {
   return first_in_lanes(map, [](const Lane& lane) -> Fault {
-    if (Fault found = check_side(lane, lane.left_boundary, lane.left_samples)) return fault("left: ", *found);
-    if (Fault found = check_side(lane, lane.right_boundary, lane.right_samples))
-      return fault("right: ", *found);
+    const auto slope = [&](std::size_t i) {
+      return (lane.path[i + 1].kappa - lane.path[i].kappa) / (lane.path[i + 1].s - lane.path[i].s);
+    };
+    // Not at the ends: what lies past them is not known.
+    double before = slope(0);
+    for (std::size_t i = 1; i + 1 < lane.path.size(); ++i) {
+      const double after = slope(i), dkappa = lane.path[i].dkappa;
+      const double slack = kRateTolerance + kRateShare * std::max(std::abs(before), std::abs(after));
+      if (dkappa < std::min(before, after) - slack || dkappa > std::max(before, after) + slack) {
+        return fault("dkappa is ", dkappa, " 1/m^2 at s = ", lane.path[i].s, " m, but kappa changes by ",
+                     before, " and ", after);
+      }
+      before = after;
+    }
     return std::nullopt;
   });
-}
-
-Fault check_neighbors(const RelativeMap& map, const MapContext&) {
-  for (std::size_t i = 0; i < map.lanes.size(); ++i) {
-    const Lane& lane = map.lanes[i];
-    for (const bool to_left : {true, false}) {
-      const std::string& id = to_left ? lane.left_neighbor_id : lane.right_neighbor_id;
-      if (id.empty()) continue;
-      const std::size_t other = index_of(map, id);
-      if (other == map.lanes.size())
-        return fault("lane '", lane.id, "' has a neighbour '", id, "' that is not there");
-      if (to_left ? other >= i : other <= i)
-        return fault("lane '", id, "' is on the wrong side of '", lane.id, "'");
-      const std::string& back =
-          to_left ? map.lanes[other].right_neighbor_id : map.lanes[other].left_neighbor_id;
-      if (back != lane.id) return fault("lane '", id, "' does not know its neighbour '", lane.id, "'");
-      if (to_left) continue;
-      if (Fault found = check_shared_boundary(lane, map.lanes[other])) return found;
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace relative_map::core

@@ -35,7 +35,14 @@ Fault first_in_lanes(const RelativeMap& map, Check check) {
 Fault check_arc_length(const RelativeMap& map, const MapContext& context);
 Fault check_heading(const RelativeMap& map, const MapContext& context);
 Fault check_curvature(const RelativeMap& map, const MapContext& context);
-Fault check_samples(const RelativeMap& map, const MapContext& context);
+Fault check_curvature_rate(const RelativeMap& map, const MapContext& context);
+/// Two rows that one walk along the borders tells.
+struct BorderFaults {
+  Fault samples, sides;
+  std::size_t lane = 0;  ///< of the first fault
+  double s = 0.0;        ///< [m] likewise, along that lane
+};
+BorderFaults check_borders(const RelativeMap& map, const MapContext& context);
 Fault check_neighbors(const RelativeMap& map, const MapContext& context);
 
 }  // namespace relative_map::core

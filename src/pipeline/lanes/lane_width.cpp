@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "own_border.hpp"
+
 namespace relative_map::core {
 
 namespace {
 
-enum class Side { kLeft = 1, kRight = -1 };
-
 constexpr double kForgetLength = 50.0;  // [m] past the paint over which a shared border goes to the middle
 constexpr double kLeastShare = 0.3;     // of the spacing, for each of two neighbours
 constexpr double kBlendLength = 10.0;   // [m] over which a border leaves the midline where the neighbour ends
-constexpr double kSharpestFold = 0.8;   // of the radius: a border farther inside a curve would fold
 constexpr double kJoinGap = 0.1;        // [m] nearer to the shared part no point is added
+constexpr double kEndShare = 2.0;       // of the spacing a vertex before, at the end of a lane
 constexpr double kLeastSideways = 0.3;  // of the spacing
 constexpr double kSameBorder = 0.01;    // [m] apart that two borders may be and still be one
 constexpr double kAlmostSquare = 0.1;   // [rad] past its end the other lane still counts as beside
@@ -26,6 +26,22 @@ struct Beside {
   double s = 0.0;        ///< [m] along the other centerline
   bool to_right = true;  ///< false: it lies ahead, behind or to the left
 };
+
+/// Of stretches on which the other lane seems to lie beside, only the one where it is nearest: where a road
+/// bends back, the end of a lane that ended long before is beside it once more, at any distance.
+void keep_nearest_stretch(std::vector<Beside>& beside) {
+  std::size_t nearest = beside.size();
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    if (beside[i].exists && (nearest == beside.size() || beside[i].spacing < beside[nearest].spacing))
+      nearest = i;
+  }
+  if (nearest == beside.size()) return;
+  bool connected = true;
+  for (std::size_t i = nearest; i < beside.size(); ++i)
+    beside[i].exists = connected = connected && beside[i].exists;
+  connected = true;
+  for (std::size_t i = nearest + 1; i-- > 0;) beside[i].exists = connected = connected && beside[i].exists;
+}
 
 std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
   const Polyline centerline = positions_of(other.points);
@@ -45,24 +61,8 @@ std::vector<Beside> look_beside(const LanePath& lane, const LanePath& other) {
       result.back().exists = past_end < kAlmostSquare * spacing;
     }
   }
+  keep_nearest_stretch(result);
   return result;
-}
-
-/// [1/m] over a stretch of `reach` [m] to both sides: a noisy line has sharp bends at single vertices.
-double mean_curvature(const PathPoints& points, std::size_t i, double reach) {
-  std::size_t first = i, last = i;
-  while (first > 0 && points[i].s - points[first].s < reach) --first;
-  while (last + 1 < points.size() && points[last].s - points[i].s < reach) ++last;
-  return angle_difference(points[last].theta, points[first].theta) / (points[last].s - points[first].s);
-}
-
-Point2 border_point(const PathPoints& points, std::size_t i, double half_width, Side side) {
-  const double sign = static_cast<double>(side);
-  if (points[i].kappa * sign * half_width > kSharpestFold) {  // the curve turns to this side, or it is noise
-    const double inward = mean_curvature(points, i, half_width) * sign;
-    if (inward * half_width > kSharpestFold) half_width = kSharpestFold / inward;
-  }
-  return points[i].position + sign * half_width * left_of(points[i].direction);
 }
 
 /// Where a neighbour has ended, the border swings from the midline to the lane's own half width.
@@ -94,23 +94,6 @@ bool share_border(const std::vector<Beside>& beside, const std::optional<Stretch
          std::all_of(beside.begin(), beside.end(), [max_spacing](const Beside& other) {
            return !other.exists || (other.to_right && other.spacing <= max_spacing);
          });
-}
-
-/// At its own half width, but never past the middle between it and the lane beside it.
-Polyline own_border(const LanePath& lane, const std::vector<Beside>& beside, double half_width, Side side) {
-  const std::optional<Stretch> stretch = stretch_beside(beside);
-  Polyline border;
-  border.reserve(lane.points.size());
-  for (std::size_t i = 0; i < lane.points.size(); ++i) {
-    double width = half_width;
-    if (stretch) {
-      const std::size_t nearest = std::clamp(i, stretch->first, stretch->last);
-      width = half_width_past_neighbor(half_width, std::min(half_width, 0.5 * beside[nearest].spacing),
-                                       std::abs(lane.points[i].s - lane.points[nearest].s));
-    }
-    border.push_back(border_point(lane.points, i, width, side));
-  }
-  return border;
 }
 
 /// A point of the border that two lanes share, and the places beside it.
@@ -166,12 +149,18 @@ std::vector<Middle> midline(const LanePath& left, const LanePath& right, const s
     const PathPoint& vertex = left.points[i];
     line.push_back(middle_between(left, vertex.position, vertex.s, right, beside[i].point, beside[i].s));
   }
-  // Where the right lane starts or ends between two vertices of the left one, so does the shared border.
-  if (const auto start = middle_at_end(left, right, right.points.front(), stretch.first)) {
+  // Where the right lane starts or ends between two vertices of the left one, so does the shared border. Far
+  // from its last point it does not: there the right lane is beside the left one by chance.
+  const auto near = [](const Middle& end, const Middle& known) {
+    return end.left_width + end.right_width <= kEndShare * (known.left_width + known.right_width);
+  };
+  const auto start = middle_at_end(left, right, right.points.front(), stretch.first);
+  if (start && near(*start, line.front())) {
     line.front().right_s = start->right_s;
     if (start->left_s < line.front().left_s - kJoinGap) line.insert(line.begin(), *start);
   }
-  if (const auto end = middle_at_end(left, right, right.points.back(), stretch.last)) {
+  const auto end = middle_at_end(left, right, right.points.back(), stretch.last);
+  if (end && near(*end, line.back())) {
     line.back().right_s = end->right_s;
     if (end->left_s > line.back().left_s + kJoinGap) line.push_back(*end);
   }
@@ -207,8 +196,8 @@ Polyline prolonged(const std::vector<Middle>& midline, const LanePath& lane, dou
 LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_width) {
   const std::size_t n = lanes.size();
   LaneBorders borders{std::vector<Polyline>(n), std::vector<Polyline>(n), std::vector<bool>(n, false)};
-  borders.left[0] = own_border(lanes[0], {}, lanes[0].left_half_width, Side::kLeft);
-  borders.right[n - 1] = own_border(lanes[n - 1], {}, lanes[n - 1].right_half_width, Side::kRight);
+  borders.left[0] = own_border(lanes[0], nullptr, lanes[0].left_half_width, Side::kLeft);
+  borders.right[n - 1] = own_border(lanes[n - 1], nullptr, lanes[n - 1].right_half_width, Side::kRight);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const LanePath &left = lanes[i], &right = lanes[i + 1];
     const std::vector<Beside> beside = look_beside(left, right);
@@ -223,8 +212,8 @@ LaneBorders find_borders(const std::vector<LanePath>& lanes, double max_half_wid
       borders.left_is_shared[i + 1] = widest_gap(borders.right[i], borders.left[i + 1]).width <= kSameBorder;
     }
     if (!borders.left_is_shared[i + 1]) {
-      borders.right[i] = own_border(left, beside, left.right_half_width, Side::kRight);
-      borders.left[i + 1] = own_border(right, look_beside(right, left), right.left_half_width, Side::kLeft);
+      borders.right[i] = own_border(left, &right, left.right_half_width, Side::kRight);
+      borders.left[i + 1] = own_border(right, &left, right.left_half_width, Side::kLeft);
     }
   }
   return borders;

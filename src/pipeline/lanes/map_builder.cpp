@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace relative_map::core {
 
@@ -9,11 +11,25 @@ namespace {
 
 constexpr double kSampleStep = 1.0;      // [m] between width samples: vertices may be far denser
 constexpr double kRoadSampleStep = 5.0;  // [m]
+constexpr double kRoadIsFar = std::numeric_limits<double>::infinity();  // its edges may be
+constexpr double kFarBorder = 2.5;                                      // [m] that few lanes have
+constexpr double kNearer = 0.8;                                         // of the squared distance
 constexpr double kHeadingError = 0.008;  // [rad] between a path's own headings and its points
 
-/// Distance to the border from a vertex every `step` [m], the first and the last one included.
-std::vector<WidthSample> measure(const PathPoints& path, const Polyline& border, double step) {
-  PolylineWalker walker(border);
+Foot nearest_foot(const Polyline& border, const Point2& point) {
+  Foot nearest;
+  for (std::size_t i = 0; i + 1 < border.size(); ++i) {
+    Foot foot = project_on_segment(border[i], border[i + 1], point);
+    foot.segment = i;
+    if (i == 0 || foot.squared_distance < nearest.squared_distance) nearest = foot;
+  }
+  return nearest;
+}
+
+/// Distance to the border from a vertex every `step` [m], the first and the last one included. Where it seems
+/// `far` [m] away, all of the border is looked at.
+std::vector<WidthSample> measure(const PathPoints& path, const Polyline& border, double step, double far) {
+  std::optional<PolylineWalker> walker(border);
   std::vector<WidthSample> samples;
   samples.reserve(static_cast<std::size_t>(path.back().s / step) + 2);
   std::size_t steps = 0;
@@ -21,7 +37,15 @@ std::vector<WidthSample> measure(const PathPoints& path, const Polyline& border,
   for (const PathPoint& vertex : path) {
     ++steps;
     if (vertex.s < next_s && &vertex != &path.back()) continue;
-    samples.push_back({vertex.s, std::sqrt(walker.next(vertex.position, steps).squared_distance)});
+    Foot foot = walker->next(vertex.position, steps);
+    if (foot.squared_distance > far * far) {  // where a border folds, a walk along it may not get past
+      const Foot nearest = nearest_foot(border, vertex.position);
+      if (nearest.squared_distance < kNearer * foot.squared_distance) {
+        foot = nearest;
+        walker.emplace(border, nearest.segment);
+      }
+    }
+    samples.push_back({vertex.s, std::sqrt(foot.squared_distance)});
     steps = 0;
     next_s = vertex.s + step;
   }
@@ -102,7 +126,7 @@ bool headings_fit(const PathPoints& path) {
          fits_at_end(path[last], path[last].position - path[last - 1].position, 1.0);
 }
 
-Lane make_lane(LanePath path, double speed_limit) {
+Lane make_lane(LanePath& path, double speed_limit) {
   if (!headings_fit(path.points)) compute_geometry(path.points);
   Lane lane;
   lane.id = std::move(path.id);
@@ -133,17 +157,17 @@ Road make_road(const std::vector<Lane>& lanes) {
 
 }  // namespace
 
-RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::size_t current,
+RelativeMap build_map(std::vector<LanePath>& lanes, LaneBorders borders, std::size_t current,
                       const SeenPaint& paint, const PipelineConfig& config) {
   RelativeMap map;
   map.frame_id = config.base_frame;
   const std::size_t n = lanes.size();
   for (std::size_t i = 0; i < n; ++i) {
-    Lane lane = make_lane(std::move(lanes[i]), config.map_param.default_speed_limit);
+    Lane lane = make_lane(lanes[i], config.map_param.default_speed_limit);
     lane.left_boundary = make_boundary(std::move(borders.left[i]));
     lane.right_boundary = make_boundary(std::move(borders.right[i]));
-    lane.left_samples = measure(lane.path, lane.left_boundary.points, kSampleStep);
-    lane.right_samples = measure(lane.path, lane.right_boundary.points, kSampleStep);
+    lane.left_samples = measure(lane.path, lane.left_boundary.points, kSampleStep, kFarBorder);
+    lane.right_samples = measure(lane.path, lane.right_boundary.points, kSampleStep, kFarBorder);
     if (i > 0 && borders.left_is_shared[i]) {
       lane.left_neighbor_id = map.lanes.back().id;
       map.lanes.back().right_neighbor_id = lane.id;
@@ -155,11 +179,19 @@ RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::siz
   shift_priorities(map.lanes);
   map.roads.push_back(make_road(map.lanes));
   for (Lane& lane : map.lanes) {
-    lane.left_road_samples = measure(lane.path, map.roads[0].left_edge, kRoadSampleStep);
-    lane.right_road_samples = measure(lane.path, map.roads[0].right_edge, kRoadSampleStep);
+    lane.left_road_samples = measure(lane.path, map.roads[0].left_edge, kRoadSampleStep, kRoadIsFar);
+    lane.right_road_samples = measure(lane.path, map.roads[0].right_edge, kRoadSampleStep, kRoadIsFar);
   }
   map.current_lane_id = map.lanes[current].id;
   return map;
+}
+
+void take_back(RelativeMap&& map, std::vector<LanePath>& lanes) {
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    lanes[i].id = std::move(map.lanes[i].id);
+    lanes[i].name = std::move(map.lanes[i].name);
+    lanes[i].points = std::move(map.lanes[i].path);
+  }
 }
 
 }  // namespace relative_map::core

@@ -18,9 +18,12 @@ constexpr double kCrossing = 0.35;  // [rad] where they meet: more than lanes th
 /// A place of a lane beside a better one.
 struct Place {
   double s = 0.0;         ///< [m] along the lane
-  double turned = 0.0;    ///< [rad] of it from the better one
+  Point2 along, better;   ///< directions of the two
   bool beside = false;    ///< false: past an end of the better one
   double distance = 0.0;  ///< [m] between the two
+
+  /// [rad] of the lane from the better one.
+  double turned() const { return std::atan2(cross(better, along), better.dot(along)); }
 };
 
 /// The better lane, to be looked at from others.
@@ -39,7 +42,8 @@ class BetterLane {
       while (s < lane.points[i + 1].s) {
         const Place place = look(walker, lane, i, s, std::max<std::size_t>(1, i - last));
         last = i;
-        if (place.beside && place.distance < spacing) return place;
+        // Past an end of the better one the lane may be what it goes on as.
+        if (place.distance < spacing && (place.beside || std::abs(place.turned()) > kCrossing)) return place;
         s += std::max(step, place.distance - spacing);  // it comes no nearer by more than the way between
       }
     }
@@ -67,23 +71,12 @@ class BetterLane {
     const Point2 along = b.position - a.position;
     const Foot foot = walker.next(a.position + (s - a.s) / (b.s - a.s) * along, steps);
     const Point2 other = centerline_[foot.segment + 1] - centerline_[foot.segment];
-    return {s, std::atan2(cross(other, along), other.dot(along)), !walker.beyond_end(foot),
-            std::sqrt(foot.squared_distance)};
+    return {s, along, other, !walker.beyond_end(foot), std::sqrt(foot.squared_distance)};
   }
 
   Polyline centerline_;
   std::string id_;
 };
-
-/// Ends a lane before `s` [m]; false leaves it as it is: what remained of it ahead would be too short.
-bool cut_short(LanePath& lane, double s) {
-  const auto end = std::find_if(lane.points.begin(), lane.points.end(),
-                                [s](const PathPoint& point) { return point.s >= s; });
-  if (end - lane.points.begin() < 2 || (end - 1)->s - lane.s_at_vehicle < kShortestLane) return false;
-  lane.points.erase(end, lane.points.end());
-  lane.remaining = lane.points.back().s - lane.s_at_vehicle;
-  return true;
-}
 
 template <class... Parts>
 std::string sentence(const LanePath& lane, const Parts&... parts) {
@@ -105,9 +98,9 @@ bool has_room(LanePath& lane, const BetterLane& better, double half_width,
   const std::optional<Place> narrow = better.first_nearer_place(lane, 2.0 * half_width);
   if (!narrow) return true;
   const double ahead = std::max(0.0, narrow->s - lane.s_at_vehicle);
-  if (std::abs(narrow->turned) > kCrossing) {
+  if (std::abs(narrow->turned()) > kCrossing) {
     sentences.push_back(sentence(lane, "is left out: ", ahead, " m ahead it crosses '", better.id(), "', by ",
-                                 degrees(narrow->turned), " degrees"));
+                                 degrees(narrow->turned()), " degrees"));
     return false;
   }
   const bool cut = cut_short(lane, narrow->s);
@@ -118,6 +111,15 @@ bool has_room(LanePath& lane, const BetterLane& better, double half_width,
 }
 
 }  // namespace
+
+bool cut_short(LanePath& lane, double s) {
+  const auto end = std::find_if(lane.points.begin(), lane.points.end(),
+                                [s](const PathPoint& point) { return point.s >= s; });
+  if (end - lane.points.begin() < 2 || (end - 1)->s - lane.s_at_vehicle < kShortestLane) return false;
+  lane.points.erase(end, lane.points.end());
+  lane.remaining = lane.points.back().s - lane.s_at_vehicle;
+  return true;
+}
 
 std::vector<std::string> make_room(std::vector<LanePath>& lanes, std::size_t& current, double half_width) {
   std::vector<std::string> sentences;
@@ -130,9 +132,9 @@ std::vector<std::string> make_room(std::vector<LanePath>& lanes, std::size_t& cu
     bool stays = true;
     if (!better.empty()) {
       const Place beside = better.front().beside_vehicle(lane);
-      stays = !beside.beside || std::abs(beside.turned) <= kOtherRoad;
+      stays = !beside.beside || std::abs(beside.turned()) <= kOtherRoad;
       if (!stays)
-        sentences.push_back(sentence(lane, "is left out: it is another road's, ", degrees(beside.turned),
+        sentences.push_back(sentence(lane, "is left out: it is another road's, ", degrees(beside.turned()),
                                      " degrees aside of '", better.front().id(), "'"));
     }
     for (const BetterLane& other : better) stays = stays && has_room(lane, other, half_width, sentences);

@@ -12,8 +12,11 @@ namespace relative_map::core {
 
 namespace {
 
-constexpr double kMinSpacing = 1e-3;      // [m] nearer vertices are one and the same
-constexpr double kFarthest = 1e8;         // [m] no projection of the Earth reaches farther
+constexpr double kMinSpacing = 1e-3;  // [m] nearer vertices are one and the same
+constexpr double kFarthest = 1e8;     // [m] no projection of the Earth reaches farther
+/// An about-turn shows in the chords of a line over some reach [m] before and behind a vertex, by the cosine
+/// of the turn between them: about 100 degrees on a radius of 0.6 m, and 115 on that of a lane's half width.
+constexpr std::pair<double, double> kAboutTurns[] = {{1.0, -0.17}, {3.5, -0.42}};
 constexpr std::size_t kManyLines = 1000;  // that nobody means to send
 
 /// Positions relative to the first point, with duplicates left out; a sentence if there are too few.
@@ -87,6 +90,14 @@ bool curvatures_agree(const RecordedLine& recorded, const std::vector<std::size_
   return true;
 }
 
+/// From the point before to the one after, as of curvatures that are computed.
+void set_rates(PathPoints& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PathPoint &before = points[i == 0 ? 0 : i - 1], &after = points[std::min(i + 1, points.size() - 1)];
+    points[i].dkappa = (after.kappa - before.kappa) / (after.s - before.s);
+  }
+}
+
 /// dkappa as recorded where all of it is finite and of a size with the curvature's changes.
 bool rates_agree(const RecordedLine& recorded, const std::vector<std::size_t>& kept,
                  const PathPoints& points) {
@@ -107,6 +118,7 @@ void keep_recorded_geometry(const RecordedLine& recorded, const std::vector<std:
     points[i].direction = {std::cos(points[i].theta), std::sin(points[i].theta)};
     points[i].kappa = recorded.points[kept[i]].kappa;
   }
+  set_rates(points);
   if (!rates_agree(recorded, kept, points)) return;
   for (std::size_t i = 0; i < points.size(); ++i) points[i].dkappa = recorded.points[kept[i]].dkappa;
 }
@@ -116,8 +128,45 @@ std::string kink_sentence(const NavigationLine& line) {
   sentence.precision(3);
   sentence << "line '" << line.id << "' turns back at s = " << line.points[line.kinks.front()].s << " m";
   if (line.kinks.size() > 1) sentence << " and at " << line.kinks.size() - 1 << " more points";
-  sentence << ", by more than 90 degrees from point to point: its lane ends there";
+  sentence << ": no vehicle gets round so sharply, and its lane ends there";
   return sentence.str();
+}
+
+bool has_kink(const NavigationLine& line, std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i <= to; ++i) {
+    if (line.is_kink(i % line.points.size())) return true;
+  }
+  return false;
+}
+
+/// Adds to the kinks of a line the about-turns that take it several vertices: where the chords before and
+/// behind a vertex enclose so sharp an angle, no vehicle gets round, and no lane has two borders.
+void add_about_turns(NavigationLine& line, double reach, double sharpest) {
+  const PathPoints& points = line.points;
+  const std::size_t n = points.size();
+  // Vertices are counted on from the second of three laps of a closed line.
+  const std::size_t first = line.closed() ? n : 0, last = line.closed() ? 2 * n - 1 : n - 1;
+  const std::size_t most = line.closed() ? 3 * n - 1 : n - 1;
+  const auto s = [&](std::size_t i) { return points[i % n].s + static_cast<double>(i / n) * line.length; };
+  const auto at = [&](std::size_t i) -> const Point2& { return points[i % n].position; };
+  std::vector<std::size_t> found;
+  std::size_t before = 0, after = first, sharp_since = 0;  // 0: it is not sharp
+  for (std::size_t i = first; i <= last; ++i) {
+    while (before + 1 < i && s(i) - s(before + 1) >= reach) ++before;
+    while (after < most && s(after) - s(i) < reach) ++after;
+    const Point2 back = at(i) - at(before), ahead = at(after) - at(i);
+    // Beside a kink the chords are of two directions anyhow.
+    const bool sharp =
+        back.dot(ahead) < sharpest * back.norm() * ahead.norm() && !has_kink(line, before, after);
+    if (sharp && sharp_since == 0) sharp_since = i;
+    if (sharp_since == 0 || (sharp && i < last)) continue;
+    const std::size_t end = sharp ? i : i - 1;
+    for (const std::size_t kink : {sharp_since, (sharp_since + end) / 2, end}) found.push_back(kink % n);
+    sharp_since = 0;
+  }
+  line.kinks.insert(line.kinks.end(), found.begin(), found.end());
+  std::sort(line.kinks.begin(), line.kinks.end());
+  line.kinks.erase(std::unique(line.kinks.begin(), line.kinks.end()), line.kinks.end());
 }
 
 /// The last segment may be of any length, so it does not count.
@@ -142,6 +191,7 @@ std::string prepare(const RecordedLine& recorded, const IntakeParam& param, Navi
   if (!stitched) keep_recorded_geometry(recorded, kept, line);
   line.thinned = spacing_varies(line.points);
   line.kinks = find_kinks(line.points, line.ends);
+  for (const auto& [reach, sharpest] : kAboutTurns) add_about_turns(line, reach, sharpest);
   line.index = SegmentIndex(line.points, line.ends);
   for (const PathPoint& point : line.points) line.bounds.extend(point.position);
   return "";

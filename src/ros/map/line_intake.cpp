@@ -121,7 +121,7 @@ bool LineIntake::on_load(LoadNavigationLines::Request& request, LoadNavigationLi
       localization_frame = frame_name(localization_frame_);
     }
     const std::string otherwise = localization_frame.empty() ? map_frame_ : localization_frame;
-    expect_allowed(request.files, folder_, kLineFolderParameter);
+    expect_allowed(request.files, folder_);
     std::vector<std::string> notes;
     const core::NavigationInfo info =
         load_lines(request.files, request.frame_id.empty() ? otherwise : request.frame_id, notes);

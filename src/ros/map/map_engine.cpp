@@ -1,5 +1,6 @@
 #include "relative_map/ros/map/map_engine.hpp"
 
+#include <boost/make_shared.hpp>
 #include <cmath>
 
 #include "relative_map/pipeline/contract/map_check.hpp"
@@ -21,6 +22,17 @@ std::string joined(const std::vector<std::string>& sentences) {
   std::string text;
   for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
   return text;
+}
+
+/// As received, but for a heading that is not given: it comes from the orientation, since who reads a map
+/// reads its localization too, and no number of a map is NaN.
+LocalizationEstimateConstPtr with_heading(const LocalizationEstimateConstPtr& message,
+                                          const core::Localization& localization) {
+  const Eigen::Vector3d forward = localization.map_from_body * Eigen::Vector3d::UnitX();
+  if (!std::isnan(message->pose.heading) || !forward.allFinite()) return message;
+  const auto filled = boost::make_shared<LocalizationEstimate>(*message);
+  filled->pose.heading = std::atan2(forward.y(), forward.x());
+  return filled;
 }
 
 }  // namespace
@@ -58,7 +70,7 @@ void MapEngine::on_localization(const LocalizationEstimateConstPtr& message, con
     if (!pipeline_.set_localization(localization, is_base ? std::nullopt : link_from_base, to_core(received)))
       return;
   }
-  localization_ = message;
+  localization_ = with_heading(message, localization);
   newest_pose_ = localization.stamp;
   localization_has_transform_ = link_from_base.has_value();
 }
@@ -115,11 +127,10 @@ void MapEngine::set_speed_limits(core::RelativeMap& map) const {
 }
 
 MapMsgPtr MapEngine::tick(const ros::Time& now) {
-  if (core::goes_back(to_core(last_tick_), to_core(now))) {
+  if (pipeline_.set_clock(to_core(now))) {
     reset();
-    pipeline_.clock_went_back();
+    map_ = core::RelativeMap();
   }
-  last_tick_ = now;
   const bool of_now = pose_is_of_now(now);
   if (of_now && mapped_pose_ == newest_pose_ && !config_->predict_to_tick) return nullptr;
   mapped_pose_ = newest_pose_;
@@ -128,7 +139,11 @@ MapMsgPtr MapEngine::tick(const ros::Time& now) {
   core::RelativeMap built = fault ? pipeline_.empty_map(*fault, of_now ? *newest_pose_ : to_core(now))
                                   : pipeline_.tick(to_core(now));
   set_speed_limits(built);
-  map_ = core::checked(std::move(built), {config_->base_frame, published_sequence_num_});
+  core::MapContext context = core::MapContext::of(*config_);
+  context.previous_sequence_num = published_sequence_num_;
+  context.previous_stamp = map_.stamp;
+  context.borders_are_checked = true;  // by the pipeline
+  map_ = core::checked(std::move(built), context);
   published_sequence_num_ = map_.sequence_num;
   remarks_ = fault ? std::vector<std::string>() : pipeline_.remarks();
   if (!marker_fault_.empty()) remarks_.push_back(marker_fault_);

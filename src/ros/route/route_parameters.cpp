@@ -57,7 +57,6 @@ RouteNodeConfig make_route_config(const ParameterSet& parameters) {
              {{"flu", OrientationConvention::kFlu}, {"rfu", OrientationConvention::kRfu}});
   taker.take("rate", config.rate);
   taker.take("lane_graph", config.lane_graph);
-  taker.take("lane_graphs_folder", config.lane_graphs_folder);
   taker.take("base_frame", config.base_frame);
   taker.take("max_age/localization", config.max_age_localization);
   taker.take("max_age/chassis", config.max_age_chassis);

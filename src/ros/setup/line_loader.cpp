@@ -53,8 +53,7 @@ std::vector<std::string> line_files(const std::string& yaml_file) {
   return files;
 }
 
-void expect_allowed(const std::vector<std::string>& files, const std::string& root,
-                    const std::string& parameter) {
+void expect_allowed(const std::vector<std::string>& files, const std::string& root) {
   namespace fs = std::filesystem;
   for (const std::string& file : files) {
     const fs::path path(file);
@@ -67,8 +66,8 @@ void expect_allowed(const std::vector<std::string>& files, const std::string& ro
     const fs::path folder = fs::weakly_canonical(root, error), place = fs::weakly_canonical(path, error);
     const auto [end, unused] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
     if (error || end != folder.end()) {
-      throw std::runtime_error("'" + file + "' does not lie in " + root + ", where files are loaded from (~" +
-                               parameter + ")");
+      throw std::runtime_error("'" + file + "' does not lie in " + root + ", where lines are loaded from (~" +
+                               kLineFolderParameter + ")");
     }
   }
 }

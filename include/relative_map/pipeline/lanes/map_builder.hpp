@@ -20,8 +20,11 @@ struct SeenPaint {
 };
 
 /// Lanes, boundaries, samples, neighbours and the road around them. `lanes` and `borders` belong together.
-/// Leaves stamp, sequence number and status to the caller.
-RelativeMap build_map(std::vector<LanePath> lanes, LaneBorders borders, std::size_t current,
+/// Names and points move into the map. Leaves stamp, sequence number and status to the caller.
+RelativeMap build_map(std::vector<LanePath>& lanes, LaneBorders borders, std::size_t current,
                       const SeenPaint& paint, const PipelineConfig& config);
+
+/// Moves names and points back to where `build_map` has them from.
+void take_back(RelativeMap&& map, std::vector<LanePath>& lanes);
 
 }  // namespace relative_map::core

@@ -64,7 +64,6 @@ class MapEngine {
   LaneMarkersConstPtr markers_;
   bool localization_has_transform_ = true;
   std::string marker_fault_;
-  ros::Time last_tick_;
   std::optional<core::Time> newest_pose_, mapped_pose_;  ///< stamps, where a transform is missing too
   std::optional<std::uint32_t> published_sequence_num_;
   core::RelativeMap map_;

@@ -16,7 +16,6 @@ struct RouteNodeConfig {
   RouteSource source = RouteSource::kLaneGraph;
   double rate = 10.0;      ///< [Hz] of the segments on a lane graph; on a relative map one for each map
   std::string lane_graph;  ///< a file to start with; empty: the topic's
-  std::string lane_graphs_folder;  ///< that ~load_lane_graph reads from, links followed; empty: any
   std::string base_frame = "base_link";
   double max_age_localization = 0.5;  ///< [s]
   double max_age_chassis = 1.0;       ///< [s]

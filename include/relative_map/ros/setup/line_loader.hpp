@@ -21,10 +21,8 @@ std::vector<std::string> line_files(const XmlRpc::XmlRpcValue& parameter);
 std::vector<std::string> line_files(const std::string& yaml_file);
 
 /// That these are absolute paths, and lie in the folder `root` (empty: anywhere) when all links are followed:
-/// what a service is asked for by anybody must not tell of other files. `parameter` is the one that names
-/// root.
-void expect_allowed(const std::vector<std::string>& files, const std::string& root,
-                    const std::string& parameter);
+/// what a service is asked for by anybody must not tell of other files.
+void expect_allowed(const std::vector<std::string>& files, const std::string& root);
 
 /// Reads files of any format (as .smoothed where the extension does not tell), with priorities in their
 /// order. They must be of one frame and projection, as far as they say; without a frame in any of them it is
