@@ -125,6 +125,69 @@ TEST_F(RouteEngineTest, FindsARouteFromWhereTheVehicleIs) {
   EXPECT_THAT(engine_.find(request).why_not, HasSubstr("no lane within 10 m of waypoint 0"));
 }
 
+core::LaneChangeRequest to_right() {
+  core::LaneChangeRequest request;
+  request.to = core::LaneChangeGoal::kRight;
+  return request;
+}
+
+TEST_F(RouteEngineTest, ALaneChangeIsToldUntilItIsDoneAndTheSameRouteAgainIsNoNews) {
+  const core::Route asked = *engine_.map().route();
+  EXPECT_THAT(engine_.change_lane(to_right(), ros::Time(99.0)).why_not, HasSubstr("nothing is known yet"));
+  localize(50.0, 0.0, 0.0, 100.0);
+  const std::string id = told(100.0).route_id;
+  EXPECT_EQ(engine_.change_lane(to_right(), ros::Time(100.0)).lane_id, "b0");
+  EXPECT_THAT(engine_.change_lane(to_right(), ros::Time(100.0)).why_not, HasSubstr("is on"));
+  EXPECT_EQ(engine_.set_route(asked).code, core::RouteCode::kOk);  // its publisher says it again
+  localize(51.0, 0.0, 0.0, 100.1);
+  RouteSegmentsArray message = told(100.1);
+  ASSERT_EQ(message.segments.size(), 2u);
+  EXPECT_NE(message.route_id, id);
+  EXPECT_EQ(message.segments[0].priority, 1u);
+  EXPECT_EQ(message.segments[1].priority, 0u);
+  EXPECT_EQ(message.segments[1].previous_action, RoutePassage::RIGHT);
+  EXPECT_GT(message.segments[1].path.path_point.size(), 100u);
+  for (int i = 0; i < 3; ++i) {
+    localize(60.0 + i, -3.4, 0.0, 101.0 + 0.1 * i);
+    told(101.0 + 0.1 * i);
+  }
+  EXPECT_EQ(engine_.lane_change().state, core::LaneChangeState::kDone);
+  EXPECT_EQ(engine_.last().place->lane_id, "b0");
+  core::LaneChangeRequest back;
+  back.to = core::LaneChangeGoal::kBack;
+  EXPECT_EQ(engine_.change_lane(back, ros::Time(102.0)).lane_id, "a0");
+}
+
+TEST_F(RouteEngineTest, ALaneChangeThatFailsLeavesTheWayBefore) {
+  localize(50.0, 0.0, 0.0, 100.0);
+  const std::string id = told(100.0).route_id;
+  core::LaneChangeRequest back;
+  back.to = core::LaneChangeGoal::kBack;
+  EXPECT_THAT(engine_.change_lane(back, ros::Time(100.0)).why_not, HasSubstr("no lane change to take back"));
+  engine_.change_lane(to_right(), ros::Time(100.0));
+  localize(51.0, 0.0, 0.0, 100.1);
+  EXPECT_NE(told(100.1).route_id, id);
+  localize(52.0, 0.0, 0.0, 121.0);
+  RouteSegmentsArray message = told(121.0);
+  EXPECT_EQ(engine_.lane_change().state, core::LaneChangeState::kTimedOut);
+  EXPECT_EQ(message.route_id, id);
+  EXPECT_EQ(message.segments.size(), 1u);
+  engine_.change_lane(to_right(), ros::Time(121.0));
+  EXPECT_EQ(engine_.change_lane(back, ros::Time(121.1)).why_not, "");
+  EXPECT_EQ(engine_.lane_change().state, core::LaneChangeState::kAbandoned);
+  localize(53.0, 0.0, 0.0, 121.2);
+  EXPECT_EQ(told(121.2).route_id, id);
+  // Localization that stays away is no reason to be on for ever.
+  engine_.change_lane(to_right(), ros::Time(121.2));
+  told(150.0);
+  EXPECT_EQ(engine_.lane_change().state, core::LaneChangeState::kTimedOut);
+  localize(53.0, 0.0, 0.0, 150.0);
+  told(150.1);
+  engine_.change_lane(to_right(), ros::Time(150.1));
+  engine_.clear_route();
+  EXPECT_EQ(engine_.lane_change().message, "the route was cleared");
+}
+
 MapMsg map_of_two_lanes() {
   MapMsg map;
   map.header.frame_id = "base_link";
@@ -175,6 +238,43 @@ TEST_F(RouteEngineTest, OnARelativeMapTheBestLaneIsTheTarget) {
   EXPECT_EQ(engine_.check_map_age(ros::Time(100.2)), nullptr);
   EXPECT_EQ(engine_.check_map_age(ros::Time(101.0))->status.code, RouteStatus::STALE_MAP);
   EXPECT_EQ(engine_.on_relative_map(MapMsg(), ros::Time(101.1))->status.code, RouteStatus::NO_MAP);
+}
+
+TEST(RouteEngineOnAMap, TheLaneThatWasAskedForIsPreferred) {
+  RouteNodeConfig config;
+  config.source = RouteSource::kRelativeMap;
+  RouteEngine engine(config, [](const std::string&, const std::string&, const ros::Time&) {
+    return std::optional<Eigen::Isometry3d>(Eigen::Isometry3d::Identity());
+  });
+  MapMsg map = map_of_two_lanes();
+  map.navigation_path[0].navigation_path.path_priority = 1;
+  map.navigation_path[1].navigation_path.path_priority = 0;
+  EXPECT_EQ(engine.on_relative_map(map, ros::Time(100.0))->segments[0].priority, 0u);
+  core::LaneChangeRequest request;
+  EXPECT_THAT(engine.change_lane(to_right(), ros::Time(100.0)).why_not, HasSubstr("no lane to the right"));
+  EXPECT_EQ(engine.change_lane(request, ros::Time(100.0)).lane_id, "left");
+  RouteSegmentsArrayPtr message = engine.on_relative_map(map, ros::Time(100.1));
+  EXPECT_EQ(message->segments[0].id, "right");
+  EXPECT_EQ(message->segments[0].priority, 1u);
+  EXPECT_EQ(message->segments[1].priority, 0u);
+  map.current_lane_id = "left";
+  for (Lane& lane : map.hdmap.lane) {
+    for (geometry_msgs::Point& point : lane.central_curve.segment[0].line_segment.point) point.y -= 3.5;
+  }
+  for (NavigationPath* path :
+       {&map.navigation_path[0].navigation_path, &map.navigation_path[1].navigation_path}) {
+    for (PathPoint& point : path->path.path_point) point.y -= 3.5;
+  }
+  engine.on_relative_map(map, ros::Time(102.0));
+  message = engine.on_relative_map(map, ros::Time(102.1));
+  EXPECT_EQ(engine.lane_change().state, core::LaneChangeState::kDone);
+  EXPECT_EQ(message->segments[0].id, "left");
+  EXPECT_EQ(message->segments[0].next_action, RoutePassage::FORWARD);  // it stays there
+  map.hdmap.lane.erase(map.hdmap.lane.begin());
+  map.navigation_path.erase(map.navigation_path.begin());
+  map.current_lane_id = "right";
+  map.hdmap.lane[0].left_neighbor_forward_lane_id.clear();
+  EXPECT_EQ(engine.on_relative_map(map, ros::Time(102.2))->status.code, RouteStatus::OK);
 }
 
 TEST(RouteMessages, AGraphAndARouteAreReadAsTheyWereWritten) {

@@ -14,9 +14,9 @@ import nav_msgs.msg
 import rospy
 import rostest
 import std_srvs.srv
-from relative_map.msg import (CurveSegment, Lane, LaneGraph, LaneSampleAssociation, LocalizationEstimate, Route,
+from relative_map.msg import (CurveSegment, Lane, LaneChange, LaneGraph, LaneSampleAssociation, LocalizationEstimate, Route,
                               RoutePassage, RouteSegmentsArray, RouteStatus, RouteWaypoint)
-from relative_map.srv import FindRoute, LoadLaneGraph
+from relative_map.srv import ChangeLane, ChangeLaneRequest, FindRoute, LoadLaneGraph
 
 
 def lane(row, column):
@@ -57,7 +57,7 @@ class RouteMapTest(unittest.TestCase):
         cls.subscriber = rospy.Subscriber('route_segments', RouteSegmentsArray, cls.on_told)
         cls.timer = rospy.Timer(rospy.Duration(0.05), cls.send_pose)
         for service, kind in (('find_route', FindRoute), ('clear_route', std_srvs.srv.Trigger),
-                              ('load_lane_graph', LoadLaneGraph)):
+                              ('load_lane_graph', LoadLaneGraph), ('change_lane', ChangeLane)):
             rospy.wait_for_service('route_map/' + service, 20.0)
             setattr(cls, service, staticmethod(rospy.ServiceProxy('route_map/' + service, kind)))
 
@@ -168,6 +168,41 @@ class RouteMapTest(unittest.TestCase):
         self.routes.publish(good)
         response = self.clear_route()
         self.assertTrue(response.success)
+
+    def test_a_lane_change_that_is_asked_for(self):
+        states, routes = [], []
+        watched = (rospy.Subscriber('route_map/lane_change', LaneChange, states.append),
+                   rospy.Subscriber('route_map/route', Route, routes.append))
+        self.follow(('a0', 10.0), ('a2', 80.0))
+        type(self).pose = (30.0, 0.0, 0.0)
+        self.wait_for(lambda m: m.status.code == RouteStatus.OK and m.lane_id == 'a0', 'on the route')
+        refused = self.change_lane(to=ChangeLaneRequest.LEFT, lane_id='', force=False)
+        self.assertFalse(refused.success)
+        self.assertIn("no lane to the left of lane 'a0'", refused.message)
+        accepted = self.change_lane(to=ChangeLaneRequest.LANE, lane_id='b0', force=False)
+        self.assertTrue(accepted.success, accepted.message)
+        self.assertEqual(accepted.lane_id, 'b0')
+        message = self.wait_for(lambda m: len(m.segments) == 2, 'two passages')
+        self.assertEqual([s.priority for s in message.segments], [1, 0])
+        self.assertEqual(message.segments[1].previous_action, RoutePassage.RIGHT)
+        again = self.change_lane(to=ChangeLaneRequest.RIGHT, lane_id='', force=False)
+        self.assertIn('is on', again.message)
+        type(self).pose = (60.0, -3.4, 0.0)
+        self.wait_for(lambda m: m.lane_id == 'b0' and states and states[-1].state == LaneChange.DONE, 'done')
+        self.assertEqual((states[-1].from_lane, states[-1].to_lane), ('a0', 'b0'))
+        self.assertEqual(states[-2].state, LaneChange.CHANGING)
+        self.assertEqual(routes[-1].road[0].passage[0].segment[0].lane_id, 'a0')
+        back = self.change_lane(to=ChangeLaneRequest.BACK, lane_id='', force=False)
+        self.assertEqual((back.message, back.lane_id), ('', 'a0'))
+        back = self.change_lane(to=ChangeLaneRequest.BACK, lane_id='', force=False)
+        self.assertTrue(back.success, back.message)
+        self.wait_for(lambda m: m.status.code == RouteStatus.OK and states[-1].state == LaneChange.ABANDONED, 'taken back')
+        statuses = []
+        watched += (rospy.Subscriber('/diagnostics', diagnostic_msgs.msg.DiagnosticArray, statuses.append),)
+        self.wait_for(lambda _: any(v.key == 'lane change' and 'taken back' in v.value for a in statuses
+                                    for s in a.status for v in s.values), 'the diagnostic')
+        for subscriber in watched:
+            subscriber.unregister()
 
     def test_no_way_is_a_sentence(self):
         response = self.find_route(from_vehicle=False, follow=True, closed_lane=[],

@@ -222,6 +222,23 @@ Route to_message(const core::Route& route) {
   return message;
 }
 
+LaneChange to_message(const core::LaneChangeStatus& status) {
+  LaneChange message;
+  message.header.stamp = ros::Time(status.time);
+  message.state = static_cast<uint8_t>(status.state);
+  message.from_lane = status.from_lane;
+  message.to_lane = status.to_lane;
+  message.side = static_cast<uint8_t>(status.side);
+  message.message = status.message;
+  return message;
+}
+
+std::string sentence_of(const core::LaneChangeStatus& status) {
+  static const char* const kNames[] = {"none", "changing", "done", "timed out", "abandoned"};
+  return "to lane '" + status.to_lane + "': " + kNames[static_cast<std::size_t>(status.state)] +
+         (status.message.empty() ? "" : ": " + status.message);
+}
+
 RouteSegmentsArrayPtr to_message(const core::RouteUpdate& update,
                                  const std::vector<core::ReferenceLine>& lines) {
   auto message = boost::make_shared<RouteSegmentsArray>();

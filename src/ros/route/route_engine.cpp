@@ -32,19 +32,40 @@ std::string age_text(double age) {
 }  // namespace
 
 RouteEngine::RouteEngine(const RouteNodeConfig& config, LinkTransforms transforms)
-    : config_(config), transforms_(std::move(transforms)), map_(config.route) {}
+    : config_(config), transforms_(std::move(transforms)), map_(config.route), change_(config.lane_change) {}
 
 core::RouteStatus RouteEngine::set_graph(std::shared_ptr<const core::LaneNetwork> network) {
   lines_.emplace(network, config_.reference_line);
   search_.emplace(network, config_.search);
+  forget_lane_change("another lane graph has come");
   return map_.set_graph(std::move(network));
 }
 
 core::RouteStatus RouteEngine::set_route(const core::Route& route) {
-  return map_.set_route(route);
+  if (follows(route)) return {};
+  const core::RouteStatus status = map_.set_route(route);
+  if (status.code == core::RouteCode::kOk) forget_lane_change("another route has come");
+  return status;
+}
+
+bool RouteEngine::follows(const core::Route& route) const {
+  return map_.route() &&
+         (core::same_way(*map_.route(), route) || (asked_route_ && core::same_way(*asked_route_, route)));
+}
+
+void RouteEngine::forget_lane_change(const std::string& why) {
+  change_.abandon(why, last_tick_.toSec());
+  asked_route_.reset();
+  way_before_.reset();
+}
+
+double RouteEngine::speed(const ros::Time& now) const {
+  const bool chassis_fresh = std::abs((now - chassis_stamp_).toSec()) <= config_.max_age_chassis;
+  return chassis_fresh ? chassis_speed_ : pose_speed_;
 }
 
 void RouteEngine::clear_route() {
+  forget_lane_change("the route was cleared");
   map_.clear_route();
 }
 
@@ -126,12 +147,15 @@ RouteSegmentsArrayPtr RouteEngine::tick(const ros::Time& now) {
   const bool fresh = pose_ && std::abs((now - pose_stamp_).toSec()) <= config_.max_age_localization;
   if (fresh && pose_stamp_ == told_stamp_) return nullptr;
   told_stamp_ = pose_stamp_;
-  const bool chassis_fresh = std::abs((now - chassis_stamp_).toSec()) <= config_.max_age_chassis;
   core::RouteUpdate update;
   if (const auto found = fault(now)) {
     update = refused(*found);
+    note_lane_change(update, now);
   } else {
-    update = core::checked(map_.update(pose_, chassis_fresh ? chassis_speed_ : pose_speed_), map_.index());
+    update = map_.update(pose_, speed(now));
+    if (note_lane_change(update, now)) update = map_.update(pose_, speed(now));
+    change_.raise_target(update);
+    update = core::checked(std::move(update), map_.index());
   }
   std::vector<core::ReferenceLine> lines;
   if (!update.segments.empty()) lines = lines_->make(update.segments, pose_->position());
@@ -143,8 +167,17 @@ RouteSegmentsArrayPtr RouteEngine::tick(const ros::Time& now) {
 
 RouteSegmentsArrayPtr RouteEngine::on_relative_map(const MapMsg& map, const ros::Time& now) {
   map_stamp_ = now;
-  const core::RelativeMap relative_map = to_core(map);
-  core::RouteUpdate update = core::checked(core::route_on_relative_map(relative_map).update, nullptr);
+  last_map_ = to_core(map);
+  core::RelativeMap relative_map = last_map_;
+  prefer_lane(relative_map, now);
+  core::RouteUpdate update = core::route_on_relative_map(relative_map).update;
+  if (note_lane_change(update, now)) {
+    relative_map = last_map_;
+    prefer_lane(relative_map, now);
+    update = core::route_on_relative_map(relative_map).update;
+  }
+  change_.raise_target(update);
+  update = core::checked(std::move(update), nullptr);
   // The lanes' own paths are lines already: smoothed, with heading and curvature.
   std::vector<core::ReferenceLine> lines;
   for (const core::RouteSegments& segments : update.segments) {

@@ -1,6 +1,7 @@
 #include "relative_map/ros/route/route_map_node.hpp"
 
 #include <nav_msgs/Path.h>
+#include <relative_map/LaneChange.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include "relative_map/io/lane_graph_file.hpp"
@@ -28,6 +29,8 @@ RouteMapNode::RouteMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   line_publisher_ = private_nh_.advertise<nav_msgs::Path>("reference_line", 1);
   markers_publisher_ = private_nh_.advertise<visualization_msgs::MarkerArray>("markers", 1);
   route_publisher_ = private_nh_.advertise<Route>("route", 1, true);
+  change_publisher_ = private_nh_.advertise<LaneChange>("lane_change", 1, true);
+  change_publisher_.publish(to_message(engine_.lane_change()));
   diagnostics_.setHardwareID("none");
   diagnostics_.add("route map",
                    [this](diagnostic_updater::DiagnosticStatusWrapper& status) { summarize(status); });
@@ -53,6 +56,7 @@ RouteMapNode::RouteMapNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     clear_service_ = private_nh_.advertiseService("clear_route", &RouteMapNode::on_clear, this);
     load_service_ = private_nh_.advertiseService("load_lane_graph", &RouteMapNode::on_load, this);
   }
+  change_service_ = private_nh_.advertiseService("change_lane", &RouteMapNode::on_change, this);
   timer_ = nh_.createTimer(ros::Duration(1.0 / config_.rate), &RouteMapNode::on_timer, this);
 }
 
@@ -64,7 +68,8 @@ RouteMapNode::~RouteMapNode() {
                                       &chassis_subscriber_, &relative_map_subscriber_}) {
     subscriber->shutdown();
   }
-  for (ros::ServiceServer* service : {&find_service_, &clear_service_, &load_service_}) service->shutdown();
+  for (ros::ServiceServer* service : {&find_service_, &change_service_, &clear_service_, &load_service_})
+    service->shutdown();
 }
 
 std::string RouteMapNode::take_graph(const core::LaneGraph& graph, std::vector<std::string>& faults) {
@@ -89,7 +94,7 @@ std::string RouteMapNode::take_graph(const core::LaneGraph& graph, std::vector<s
 }
 
 std::string RouteMapNode::take_route(const core::Route& route) {
-  const bool known = engine_.map().route() && core::same_way(*engine_.map().route(), route);
+  const bool known = engine_.follows(route);
   const core::RouteStatus status = engine_.set_route(route);
   if (status.code != core::RouteCode::kOk) return status.message;
   route_fault_.clear();
@@ -97,11 +102,24 @@ std::string RouteMapNode::take_route(const core::Route& route) {
   for (const std::string& repair : engine_.map().repairs()) ROS_WARN_STREAM("route: " << repair);
   ROS_INFO_STREAM("route: " << route.roads.size() << " roads, " << route.waypoints.size() << " waypoints, "
                             << route.distance << " m");
-  Route message = to_message(route);
-  message.header.stamp = ros::Time::now();
-  message.header.frame_id = engine_.map().network()->frame_id();
-  route_publisher_.publish(message);
+  publish_news();
   return "";
+}
+
+void RouteMapNode::publish_news() {
+  const std::optional<core::Route>& route = engine_.map().route();
+  if (route && !(told_route_ && core::same_way(*told_route_, *route))) {
+    Route message = to_message(*route);
+    message.header.stamp = ros::Time::now();
+    message.header.frame_id = engine_.map().network()->frame_id();
+    route_publisher_.publish(message);
+  }
+  told_route_ = route;
+  const core::LaneChangeStatus& change = engine_.lane_change();
+  if (change.state == told_change_.state && change.time == told_change_.time) return;
+  told_change_ = change;
+  change_publisher_.publish(to_message(change));
+  ROS_INFO_STREAM("change_lane: " << sentence_of(change));
 }
 
 void RouteMapNode::on_graph(const LaneGraphConstPtr& message) {
@@ -128,6 +146,7 @@ void RouteMapNode::on_relative_map(const MapMsgConstPtr& message) {
 void RouteMapNode::on_timer(const ros::TimerEvent&) {
   const ros::Time now = ros::Time::now();
   publish(config_.source == RouteSource::kRelativeMap ? engine_.check_map_age(now) : engine_.tick(now));
+  publish_news();
 }
 
 void RouteMapNode::publish(const RouteSegmentsArrayPtr& told) {
@@ -154,6 +173,24 @@ bool RouteMapNode::on_find(FindRoute::Request& request, FindRoute::Response& res
     response.success = fault.empty();
     response.message = fault;
   }
+  return true;
+}
+
+bool RouteMapNode::on_change(ChangeLane::Request& request, ChangeLane::Response& response) {
+  if (request.to > ChangeLane::Request::BACK) {
+    response.message = "to must be LEFT, RIGHT, LANE or BACK";
+    return true;
+  }
+  core::LaneChangeRequest asked;
+  asked.to = static_cast<core::LaneChangeGoal>(request.to);
+  asked.lane_id = request.lane_id;
+  asked.force = request.force;
+  const LaneChangeAnswer answer = engine_.change_lane(asked, ros::Time::now());
+  response.success = answer.why_not.empty();
+  response.message = answer.why_not;
+  response.lane_id = answer.lane_id;
+  if (!response.success) ROS_WARN_STREAM("change_lane: refused: " << answer.why_not);
+  publish_news();
   return true;
 }
 
@@ -199,6 +236,8 @@ void RouteMapNode::summarize(diagnostic_updater::DiagnosticStatusWrapper& status
   }
   status.add("status", route_status_name(last.status.code));
   status.add("lanes of the graph", engine_.map().network() != nullptr ? engine_.map().network()->size() : 0);
+  if (engine_.lane_change().state != core::LaneChangeState::kNone)
+    status.add("lane change", sentence_of(engine_.lane_change()));
   if (!last.place) return;
   status.add("lane", last.place->lane_id);
   status.add("lateral offset [m]", last.place->l);

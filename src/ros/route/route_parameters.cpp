@@ -46,6 +46,14 @@ void take_search(ParameterTaker& taker, core::SearchParam& search) {
   taker.add("search", search.validate());
 }
 
+void take_lane_change(ParameterTaker& taker, core::LaneChangeParam& change) {
+  taker.take("lane_change/least_length", change.least_length);
+  taker.take("lane_change/duration", change.duration);
+  taker.take("lane_change/timeout", change.timeout);
+  taker.take("lane_change/done_offset", change.done_offset);
+  taker.add("lane_change", change.validate());
+}
+
 }  // namespace
 
 RouteNodeConfig make_route_config(const ParameterSet& parameters) {
@@ -69,6 +77,7 @@ RouteNodeConfig make_route_config(const ParameterSet& parameters) {
   take_route(taker, config.route);
   take_line(taker, config.reference_line);
   take_search(taker, config.search);
+  take_lane_change(taker, config.lane_change);
   taker.finish();
   return config;
 }

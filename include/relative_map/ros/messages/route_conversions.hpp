@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nav_msgs/Path.h>
+#include <relative_map/LaneChange.h>
 #include <relative_map/LaneGraph.h>
 #include <relative_map/Route.h>
 #include <relative_map/RouteSegmentsArray.h>
@@ -11,6 +12,7 @@
 #include "relative_map/model/lane_graph.hpp"
 #include "relative_map/model/route.hpp"
 #include "relative_map/model/route_segments.hpp"
+#include "relative_map/route/lane_change.hpp"
 #include "relative_map/route/reference_line.hpp"
 
 namespace relative_map {
@@ -28,6 +30,10 @@ RouteSegmentsArrayPtr to_message(const core::RouteUpdate& update,
 
 /// The line of one passage for what knows no route: poses along it.
 nav_msgs::Path to_path(const RouteSegments& segments, const std_msgs::Header& header);
+
+LaneChange to_message(const core::LaneChangeStatus& status);
+/// "to lane 'a1': done" and such.
+std::string sentence_of(const core::LaneChangeStatus& status);
 
 /// Name of a status code as in RouteStatus.
 std::string route_status_name(core::RouteCode code);

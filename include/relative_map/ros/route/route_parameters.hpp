@@ -3,6 +3,7 @@
 #include <string>
 
 #include "relative_map/ros/setup/parameters.hpp"
+#include "relative_map/route/lane_change.hpp"
 #include "relative_map/route/reference_line.hpp"
 #include "relative_map/route/route_param.hpp"
 #include "relative_map/route/route_search.hpp"
@@ -24,6 +25,7 @@ struct RouteNodeConfig {
   core::RouteParam route;
   core::ReferenceLineParam reference_line;
   core::SearchParam search;
+  core::LaneChangeParam lane_change;
 };
 
 /// The configuration, or std::runtime_error whose text lists every unknown key, wrong type and bad value.
