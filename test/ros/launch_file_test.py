@@ -3,6 +3,7 @@
 
 import glob
 import os
+import re
 import tempfile
 import unittest
 
@@ -164,6 +165,26 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual(node(config, 'relative_map').type, 'relative_map_node')
         self.assertNotIn('/vehicle_simulator/errors/drift', config.params)
         self.assertIn('<robot name="sample_car">', config.params['/robot_description'].value)
+
+    def test_the_demo_drives_on_sensors_if_asked(self):
+        config = load('demo.launch', 'sensors:=true', *NEEDED_ARGUMENTS['demo.launch'])
+        nodes = {node.name: node for node in config.nodes}
+        self.assertIn('sensor_simulator', nodes)
+        self.assertIn('localizer', nodes)
+        # Nothing but the localizer says where the vehicle is.
+        self.assertIn(('localization', 'vehicle_simulator/localization'),
+                      [(a.strip('/'), b.strip('/')) for a, b in nodes['vehicle_simulator'].remap_args])
+        values = {name: parameter.value for name, parameter in config.params.items()}
+        self.assertIs(values['/vehicle_simulator/publish_tf'], False)
+        self.assertEqual(values['/localizer/projection'], values['/sensor_simulator/projection'])
+
+    def test_the_simulated_sensors_sit_where_the_car_has_them(self):
+        config = load('demo.launch', 'sensors:=true', *NEEDED_ARGUMENTS['demo.launch'])
+        values = {name: parameter.value for name, parameter in config.params.items()}
+        joints = re.findall(r'<joint name="(imu|gnss)_joint".*?xyz="([^"]+)"', values['/robot_description'], re.S)
+        places = {name: [float(x) for x in place.split()] for name, place in joints}
+        for link, group in (('imu', 'imu'), ('gnss', 'receiver')):
+            self.assertEqual(places[link], [values['/sensor_simulator/%s/%s' % (group, axis)] for axis in 'xyz'])
 
     def test_the_demo_drives_with_errors_if_asked(self):
         config = load('demo.launch', 'errors:=true', *NEEDED_ARGUMENTS['demo.launch'])

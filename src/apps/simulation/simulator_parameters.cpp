@@ -130,6 +130,9 @@ void read_simulation(Reader& reader, core::VehicleSimulationConfig& config) {
   reader.read("max_lateral_acceleration", config.speed.max_lateral_acceleration);
   reader.read("max_acceleration", config.speed.max_acceleration);
   reader.read("max_deceleration", config.speed.max_deceleration);
+  double standing = 0.0;
+  reader.read("standing", standing, 0.0, 1000.0);
+  if (standing > 0.0) config.speed_changes = {{0.0, 0.0}, {standing, config.speed.max_speed}};
   reader.read("lane_half_width", config.paint.lane_half_width);
   reader.read("view_range", config.paint.view_range);
   reader.read("marker_quality", config.paint.quality);
@@ -194,6 +197,7 @@ SimulatorParameters read_simulator_parameters(const ros::NodeHandle& private_nh)
   reader.read("chassis_rate", parameters.chassis_rate, 1.0, 1000.0);
   reader.read("lane_marker_rate", parameters.lane_marker_rate, 1.0, 1000.0);
   reader.read("publish_navigation", parameters.publish_navigation);
+  reader.read("publish_tf", parameters.publish_tf);
   reader.read("repeat", parameters.repeat);
   reader.read("exit_at_end", parameters.exit_at_end);
   if (parameters.repeat && parameters.exit_at_end) {

@@ -20,6 +20,7 @@ struct SimulatorParameters {
   double chassis_rate = 100.0;       ///< [Hz]
   double lane_marker_rate = 15.0;    ///< [Hz]
   bool publish_navigation = true;
+  bool publish_tf = true;    ///< false: another node says where the vehicle is
   bool repeat = false;       ///< at the end of an open line, start again
   bool exit_at_end = false;  ///< at the end of an open line, exit
 };

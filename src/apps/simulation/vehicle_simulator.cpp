@@ -35,6 +35,8 @@ the map and rviz: roslaunch relative_map demo.launch navigation_lines:="FILE..."
   _drive_line:=N             index of the line that it follows, from 0 (the one in the middle)
   _max_speed:=V              [m/s] on straights
   _seed:=N                   of the sensors' noise: the same seed gives the same drive
+  _standing:=T               [s] at the start, before it drives off (0)
+  _publish_tf:=BOOL          false: another node says on tf where the vehicle is (true)
   _publish_navigation:=BOOL  false: another node publishes the lines (true)
   _exit_at_end:=BOOL         true: the node ends when the car has come to the end of its line
   _repeat:=BOOL              true: it starts again there
@@ -99,7 +101,7 @@ VehicleSimulator::VehicleSimulator(ros::NodeHandle nh, SimulatorParameters param
   localization_publisher_ = nh.advertise<LocalizationEstimate>("localization", 10);
   chassis_publisher_ = nh.advertise<Chassis>("chassis", 10);
   lane_markers_publisher_ = nh.advertise<LaneMarkers>("perception/lane_markers", 10);
-  truth_publisher_ = ros::NodeHandle("~").advertise<geometry_msgs::PoseStamped>("truth", 10);
+  truth_publisher_ = ros::NodeHandle("~").advertise<geometry_msgs::PoseStamped>("truth", 200);
   if (parameters_.publish_navigation) {
     navigation_publisher_ = nh.advertise<NavigationInfo>("navigation", 1, true);
   }
@@ -191,7 +193,7 @@ void VehicleSimulator::publish_localization() {
   message.uncertainty.orientation_std_dev.z = std::hypot(noise.localization_heading, errors.heading_bias);
   message.status.code = LocalizationStatus::OK;
   localization_publisher_.publish(message);
-  broadcast(localization);
+  if (parameters_.publish_tf) broadcast(localization);
   publish_truth();
 }
 
