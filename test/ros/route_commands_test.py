@@ -106,6 +106,42 @@ class RouteCommandsTest(unittest.TestCase):
                               'order': 0, 'driven_on': True})
             self.assertEqual(told['passages']['left']['previous_action'], 'LEFT')
 
+    def test_lane_graphs_and_routes_are_drawn(self):
+        route = self.write('route.json', self.find('--from', 'b0', 10, '--to', 'a2', 80))
+        out = os.path.join(self.folder, 'graph.png')
+        result = run('plot_lane_graph', self.graph, '--route', route, '--ids', '--out', out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(out, 'rb') as stream:
+            self.assertEqual(stream.read(8), b'\x89PNG\r\n\x1a\n')
+        for graph, why in ((route, 'is no lane graph'), (os.path.join(self.folder, 'none'), 'is no file'),
+                           (self.write('cut.json', '{"lanes": ['), 'not valid JSON')):
+            result = run('plot_lane_graph', graph, '--out', out)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(why, result.stderr)
+        self.assertEqual(run('plot_lane_graph', self.graph, '--route', self.graph, '--out', out).returncode, 1)
+        self.assertEqual(run('plot_lane_graph', self.graph, '--out', 'graph.txt').returncode, 2)
+
+    def test_recorded_lines_become_a_lane_graph(self):
+        def line(name, points):
+            return self.write(name + '.smoothed', '\n'.join(json.dumps({'x': x, 'y': y}) for x, y in points))
+        on = line('on', [(x, 0.0) for x in range(0, 301, 2)])
+        beside = line('beside', [(x, 3.5) for x in range(0, 301, 2)])
+        off = line('off', [(x, 0.1 - max(0, x - 100) ** 2 / 100.0) for x in range(0, 161, 2)])
+        out = os.path.join(self.folder, 'made.json')
+        result = run('lane_graph', 'from_lines', on, beside, off, '--out', out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn('5 lanes', result.stdout)
+        self.assertEqual(run('lane_graph', 'check', out).returncode, 0)
+        self.graph = out
+        route = self.find('--from', 'beside_0', 10, '--to', 'off_1', 40)
+        self.assertEqual([p['change_lane_type'] for p in route['roads'][0]['passages']][0], 'RIGHT')
+        self.assertEqual(route['roads'][-1]['passages'][-1]['segments'][-1]['id'], 'off_1')
+        self.assertEqual(run('lane_graph', 'from_lines', on, '--out', on).returncode, 2)
+        self.assertEqual(run('lane_graph', 'from_lines', on).returncode, 2)
+        result = run('lane_graph', 'from_lines', self.write('cut.smoothed', '{"x": 1'), '--out', out)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('cut.smoothed', result.stderr)
+
     def test_lane_graphs_are_checked_and_converted(self):
         result = run('lane_graph', 'check', self.graph)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
