@@ -14,8 +14,8 @@ namespace relative_map::core {
 /// left to right; `half_width` [m] is the vehicle's.
 std::vector<std::string> make_room(std::vector<LanePath>& lanes, std::size_t& current, double half_width);
 
-/// Ends a lane before `s` [m]; false leaves it as it is: what remained of it ahead of the vehicle would be too
-/// short.
+/// Ends a lane before `s` [m]; false leaves it as it is: what remained of it ahead of the vehicle would be
+/// too short.
 bool cut_short(LanePath& lane, double s);
 
 }  // namespace relative_map::core
