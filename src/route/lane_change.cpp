@@ -5,6 +5,8 @@
 #include <sstream>
 #include <utility>
 
+#include "relative_map/model/check_range.hpp"
+
 namespace relative_map::core {
 
 namespace {
@@ -15,16 +17,10 @@ constexpr std::size_t kSure = 2;  // updates in a row
 
 std::vector<std::string> LaneChangeParam::validate() const {
   std::vector<std::string> faults;
-  const auto expect = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    std::ostringstream text;
-    text << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-    faults.push_back(text.str());
-  };
-  expect("least_length", least_length, 1.0, 1000.0);
-  expect("duration", duration, 0.0, 60.0);
-  expect("timeout", timeout, 0.1, 1000.0);
-  expect("done_offset", done_offset, 0.01, 2.0);
+  check_range("least_length", least_length, 1.0, 1000.0, faults);
+  check_range("duration", duration, 0.0, 60.0, faults);
+  check_range("timeout", timeout, 0.1, 1000.0, faults);
+  check_range("done_offset", done_offset, 0.01, 2.0, faults);
   return faults;
 }
 

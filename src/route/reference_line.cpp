@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
+#include "relative_map/model/check_range.hpp"
 #include "relative_map/route/box_smoother.hpp"
 
 namespace relative_map::core {
@@ -25,24 +25,18 @@ BoundaryType paint_at(const std::vector<PaintSpan>& paint, double s) {
 
 std::vector<std::string> ReferenceLineParam::validate() const {
   std::vector<std::string> faults;
-  const auto expect = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    std::ostringstream text;
-    text << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-    faults.push_back(text.str());
-  };
-  expect("spacing", spacing, 0.2, 5.0);
-  expect("vehicle_width", vehicle_width, 0.1, 5.0);
-  expect("half_width", half_width, 0.5, 10.0);
-  expect("clearance", clearance, 0.0, 2.0);
-  expect("curb_clearance", curb_clearance, 0.0, 2.0);
-  expect("curb_shift", curb_shift, 0.0, 1.0);
-  expect("least_bound", least_bound, 0.0, 2.0);
-  expect("greatest_bound", greatest_bound, least_bound, 3.0);
-  expect("follow", follow, 1.0, 200.0);
-  expect("pinned", pinned, 0.0, 200.0);
-  expect("speed_limit", speed_limit, 0.1, 100.0);
-  expect("lateral_acceleration", lateral_acceleration, 0.1, 20.0);
+  check_range("spacing", spacing, 0.2, 5.0, faults);
+  check_range("vehicle_width", vehicle_width, 0.1, 5.0, faults);
+  check_range("half_width", half_width, 0.5, 10.0, faults);
+  check_range("clearance", clearance, 0.0, 2.0, faults);
+  check_range("curb_clearance", curb_clearance, 0.0, 2.0, faults);
+  check_range("curb_shift", curb_shift, 0.0, 1.0, faults);
+  check_range("least_bound", least_bound, 0.0, 2.0, faults);
+  check_range("greatest_bound", greatest_bound, least_bound, 3.0, faults);
+  check_range("follow", follow, 1.0, 200.0, faults);
+  check_range("pinned", pinned, 0.0, 200.0, faults);
+  check_range("speed_limit", speed_limit, 0.1, 100.0, faults);
+  check_range("lateral_acceleration", lateral_acceleration, 0.1, 20.0, faults);
   return faults;
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include "relative_map/model/check_range.hpp"
 
 namespace relative_map::core {
 
@@ -14,20 +15,14 @@ constexpr double kRamp = 1.5;  // [m/s] over which look_ahead rises to look_ahea
 
 std::vector<std::string> RouteParam::validate() const {
   std::vector<std::string> faults;
-  const auto expect = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    std::ostringstream text;
-    text << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-    faults.push_back(text.str());
-  };
-  expect("max_distance", max_distance, 0.5, 100.0);
-  expect("max_heading", max_heading, 0.1, 3.1416);
-  expect("look_back", look_back, 0.0, 1000.0);
-  expect("look_ahead", look_ahead, 10.0, 5000.0);
-  expect("look_ahead_fast", look_ahead_fast, look_ahead, 5000.0);
-  expect("look_ahead_time", look_ahead_time, 0.0, 60.0);
-  expect("max_lane_change_distance", max_lane_change_distance, 0.0, 100.0);
-  expect("lane_gap", lane_gap, 0.0, 10.0);
+  check_range("max_distance", max_distance, 0.5, 100.0, faults);
+  check_range("max_heading", max_heading, 0.1, 3.1416, faults);
+  check_range("look_back", look_back, 0.0, 1000.0, faults);
+  check_range("look_ahead", look_ahead, 10.0, 5000.0, faults);
+  check_range("look_ahead_fast", look_ahead_fast, look_ahead, 5000.0, faults);
+  check_range("look_ahead_time", look_ahead_time, 0.0, 60.0, faults);
+  check_range("max_lane_change_distance", max_lane_change_distance, 0.0, 100.0, faults);
+  check_range("lane_gap", lane_gap, 0.0, 10.0, faults);
   return faults;
 }
 

@@ -10,7 +10,10 @@
 #include <sstream>
 #include <utility>
 
+#include "relative_map/model/check_range.hpp"
 #include "way.hpp"
+
+#include "relative_map/model/check_range.hpp"
 
 namespace relative_map::core {
 
@@ -43,20 +46,14 @@ class StopAt : public boost::default_dijkstra_visitor {
 
 std::vector<std::string> SearchParam::validate() const {
   std::vector<std::string> faults;
-  const auto expect = [&](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    std::ostringstream text;
-    text << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-    faults.push_back(text.str());
-  };
-  expect("base_speed", base_speed, 0.1, 100.0);
-  expect("left_turn", left_turn, 0.0, 1e5);
-  expect("right_turn", right_turn, 0.0, 1e5);
-  expect("u_turn", u_turn, 0.0, 1e5);
-  expect("lane_change", lane_change, 0.0, 1e6);
-  expect("lane_change_length", lane_change_length, 0.1, 1e4);
-  expect("least_change_length", least_change_length, 0.01, 1e4);
-  expect("min_turn_radius", min_turn_radius, 0.0, 100.0);
+  check_range("base_speed", base_speed, 0.1, 100.0, faults);
+  check_range("left_turn", left_turn, 0.0, 1e5, faults);
+  check_range("right_turn", right_turn, 0.0, 1e5, faults);
+  check_range("u_turn", u_turn, 0.0, 1e5, faults);
+  check_range("lane_change", lane_change, 0.0, 1e6, faults);
+  check_range("lane_change_length", lane_change_length, 0.1, 1e4, faults);
+  check_range("least_change_length", least_change_length, 0.01, 1e4, faults);
+  check_range("min_turn_radius", min_turn_radius, 0.0, 100.0, faults);
   return faults;
 }
 

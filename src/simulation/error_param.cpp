@@ -1,6 +1,6 @@
 #include "relative_map/simulation/error_param.hpp"
 
-#include <sstream>
+#include "relative_map/model/check_range.hpp"
 
 namespace relative_map::core {
 
@@ -13,14 +13,6 @@ void check_episode(const std::string& name, const EpisodeParam& episode, std::ve
 }
 
 }  // namespace
-
-void check_range(const std::string& name, double value, double low, double high,
-                 std::vector<std::string>& faults) {
-  if (value >= low && value <= high) return;  // NaN never is
-  std::ostringstream fault;
-  fault << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-  faults.push_back(fault.str());
-}
 
 std::vector<std::string> ErrorParam::validate() const {
   std::vector<std::string> faults;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "relative_map/model/check_range.hpp"
 #include "relative_map/simulation/smooth_step.hpp"
 
 namespace relative_map::core {

@@ -153,7 +153,8 @@ TEST(SimulatedDrive, ATunnelIsBridged) {
     const Outcome outcome = drive(sensors, 90.0, 25.0, seed);
     EXPECT_LT(outcome.worst, 1.5) << seed;
     EXPECT_LT(outcome.worst_ok, 0.5) << seed;
-    // Seed 3's heading is off by more than is said: a fault that is known, and told in doc/localization.md.
+    // Seed 3 is off by more than is said: a fault that is known, but not its cause; told in
+    // doc/localization.md.
     EXPECT_GE(outcome.honest, (seed == 3 ? 0.92 : 0.97) * outcome.poses) << seed;
   }
 }

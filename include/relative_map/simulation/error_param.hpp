@@ -80,8 +80,4 @@ struct ErrorParam {
   std::vector<std::string> validate() const;
 };
 
-/// Appends a sentence if `value` does not lie in [low, high].
-void check_range(const std::string& name, double value, double low, double high,
-                 std::vector<std::string>& faults);
-
 }  // namespace relative_map::core

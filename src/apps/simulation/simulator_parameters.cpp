@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "relative_map/io/navigation_line_file.hpp"
+#include "relative_map/model/check_range.hpp"
 
 namespace relative_map {
 
@@ -31,13 +32,13 @@ class Reader {
 
   void read(const std::string& name, double& value, double low, double high) {
     read(name, value);
-    check(name, value, low, high);
+    core::check_range(name, value, low, high, faults);
   }
 
   int read(const std::string& name, int fallback, int low, int high) {
     int value = fallback;
     read(name, value);
-    check(name, value, low, high);
+    core::check_range(name, value, low, high, faults);
     return value;
   }
 
@@ -71,14 +72,6 @@ class Reader {
   std::vector<std::string> faults;
 
  private:
-  template <class T>
-  void check(const std::string& name, T value, T low, T high) {
-    if (value >= low && value <= high) return;  // NaN never is
-    std::ostringstream fault;
-    fault << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-    faults.push_back(fault.str());
-  }
-
   static const char* type_name(double) { return "a number"; }
   static const char* type_name(int) { return "an integer"; }
   static const char* type_name(bool) { return "true or false"; }

@@ -5,52 +5,44 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "relative_map/model/check_range.hpp"
+
 namespace relative_map::core {
-
-namespace {
-
-void check(const char* name, double value, double low, double high, std::vector<std::string>& faults) {
-  if (value >= low && value <= high) return;  // NaN never is
-  std::ostringstream fault;
-  fault << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-  faults.push_back(fault.str());
-}
-
-}  // namespace
 
 std::vector<std::string> SensorParam::validate() const {
   std::vector<std::string> faults;
   if (map.projection == Projection::kNone) faults.push_back("the map's place on the earth is not given");
-  check("terrain/slope", terrain.slope, 0.0, 0.2, faults);
-  check("terrain/wavelength", terrain.wavelength, 50.0, 1e5, faults);
+  check_range("terrain/slope", terrain.slope, 0.0, 0.2, faults);
+  check_range("terrain/wavelength", terrain.wavelength, 50.0, 1e5, faults);
   for (const double lever : {imu.x, imu.y, imu.z, receiver.x, receiver.y, receiver.z}) {
-    check("a sensor's place", lever, -20.0, 20.0, faults);
+    check_range("a sensor's place", lever, -20.0, 20.0, faults);
   }
-  for (const double angle : {imu.roll, imu.pitch, imu.yaw}) check("imu's angle", angle, -3.2, 3.2, faults);
-  check("imu/gyro_noise", imu.gyro_noise, 0.0, 1.0, faults);
-  check("imu/accel_noise", imu.accel_noise, 0.0, 10.0, faults);
-  check("imu/gyro_bias", imu.gyro_bias, 0.0, 1.0, faults);
-  check("imu/accel_bias", imu.accel_bias, 0.0, 10.0, faults);
-  check("imu/gyro_bias_walk", imu.gyro_bias_walk, 0.0, 1.0, faults);
-  check("imu/accel_bias_walk", imu.accel_bias_walk, 0.0, 1.0, faults);
-  check("imu/stamp_late", imu.stamp_late, -1.0, 1.0, faults);
-  check("receiver/rate", receiver.rate, 0.1, 50.0, faults);
-  check("receiver/latency", receiver.latency, 0.0, 1.0, faults);
-  check("receiver/stamp_late", receiver.stamp_late, -1.0, 1.0, faults);
-  check("receiver/fixed", receiver.fixed, 0.0, 1.0, faults);
-  check("receiver/float", receiver.floating, 0.0, 10.0, faults);
-  check("receiver/plain", receiver.plain, 0.0, 100.0, faults);
-  check("receiver/slow_time", receiver.slow_time, 0.1, 1e5, faults);
-  check("receiver/velocity", receiver.velocity, 0.0, 10.0, faults);
-  check("receiver/multipath", receiver.multipath, 0.0, 1000.0, faults);
-  check("receiver/multipath_time", receiver.multipath_time, 0.1, 1e5, faults);
-  check("receiver/jump", receiver.jump, 0.0, 1e5, faults);
-  check("receiver/refix_time", receiver.refix_time, 0.0, 1000.0, faults);
-  check("wheels/rate", wheels.rate, 0.1, 100.0, faults);
-  check("wheels/speed_noise", wheels.speed_noise, 0.0, 10.0, faults);
-  check("wheels/scale", wheels.scale, 0.0, 0.3, faults);
-  check("wheels/yaw_rate_noise", wheels.yaw_rate_noise, 0.0, 1.0, faults);
-  check("wheels/yaw_rate_bias", wheels.yaw_rate_bias, 0.0, 1.0, faults);
+  for (const double angle : {imu.roll, imu.pitch, imu.yaw})
+    check_range("imu's angle", angle, -3.2, 3.2, faults);
+  check_range("imu/gyro_noise", imu.gyro_noise, 0.0, 1.0, faults);
+  check_range("imu/accel_noise", imu.accel_noise, 0.0, 10.0, faults);
+  check_range("imu/gyro_bias", imu.gyro_bias, 0.0, 1.0, faults);
+  check_range("imu/accel_bias", imu.accel_bias, 0.0, 10.0, faults);
+  check_range("imu/gyro_bias_walk", imu.gyro_bias_walk, 0.0, 1.0, faults);
+  check_range("imu/accel_bias_walk", imu.accel_bias_walk, 0.0, 1.0, faults);
+  check_range("imu/stamp_late", imu.stamp_late, -1.0, 1.0, faults);
+  check_range("receiver/rate", receiver.rate, 0.1, 50.0, faults);
+  check_range("receiver/latency", receiver.latency, 0.0, 1.0, faults);
+  check_range("receiver/stamp_late", receiver.stamp_late, -1.0, 1.0, faults);
+  check_range("receiver/fixed", receiver.fixed, 0.0, 1.0, faults);
+  check_range("receiver/float", receiver.floating, 0.0, 10.0, faults);
+  check_range("receiver/plain", receiver.plain, 0.0, 100.0, faults);
+  check_range("receiver/slow_time", receiver.slow_time, 0.1, 1e5, faults);
+  check_range("receiver/velocity", receiver.velocity, 0.0, 10.0, faults);
+  check_range("receiver/multipath", receiver.multipath, 0.0, 1000.0, faults);
+  check_range("receiver/multipath_time", receiver.multipath_time, 0.1, 1e5, faults);
+  check_range("receiver/jump", receiver.jump, 0.0, 1e5, faults);
+  check_range("receiver/refix_time", receiver.refix_time, 0.0, 1000.0, faults);
+  check_range("wheels/rate", wheels.rate, 0.1, 100.0, faults);
+  check_range("wheels/speed_noise", wheels.speed_noise, 0.0, 10.0, faults);
+  check_range("wheels/scale", wheels.scale, 0.0, 0.3, faults);
+  check_range("wheels/yaw_rate_noise", wheels.yaw_rate_noise, 0.0, 1.0, faults);
+  check_range("wheels/yaw_rate_bias", wheels.yaw_rate_bias, 0.0, 1.0, faults);
   return faults;
 }
 

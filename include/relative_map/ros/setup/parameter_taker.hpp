@@ -1,12 +1,12 @@
 #pragma once
 
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "relative_map/model/check_range.hpp"
 #include "relative_map/ros/setup/parameters.hpp"
 
 namespace relative_map {
@@ -61,10 +61,7 @@ class ParameterTaker {
     faults.push_back(name + " is '" + word + "', but must be " + choice);
   }
   void expect(const std::string& name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    std::ostringstream text;
-    text << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
-    faults.push_back(text.str());
+    core::check_range(name, value, low, high, faults);
   }
   void add(const std::string& group, const std::vector<std::string>& found) {
     for (const std::string& fault : found) faults.push_back(group + "/" + fault);
